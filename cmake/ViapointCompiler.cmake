@@ -1,0 +1,16 @@
+# One interface target carries what every target of the project compiles with.
+add_library(viapoint_compiler INTERFACE)
+target_compile_options(viapoint_compiler INTERFACE
+  -Wall -Wextra -Wconversion -Wshadow -Werror
+  # Planner and controller must agree to the last bit: no fused multiply-add of the compiler's choosing.
+  -ffp-contract=off)
+if(VIAPOINT_SANITIZE)
+  target_compile_options(viapoint_compiler INTERFACE
+    -fsanitize=${VIAPOINT_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  target_link_options(viapoint_compiler INTERFACE -fsanitize=${VIAPOINT_SANITIZE})
+endif()
+
+find_program(CCACHE_PROGRAM ccache)
+if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${CCACHE_PROGRAM}")
+endif()

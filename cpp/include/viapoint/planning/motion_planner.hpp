@@ -1,0 +1,59 @@
+/// @file
+/// From a program to a proven trajectory, and the report of everything that is wrong with it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "viapoint/core/error.hpp"
+#include "viapoint/kinematics/robot_model.hpp"
+#include "viapoint/program/motion_program.hpp"
+#include "viapoint/trajectory/trajectory.hpp"
+
+namespace viapoint {
+
+/// What became of the zone of one move.
+struct CornerOutcome {
+  int move = 0;
+  Zone asked;
+  bool stopped = false;    ///< the arm stops at the point
+  double used = 0.0;       ///< size really used, in the zone's own unit
+  double cut = 0.0;        ///< proven largest distance of the tool from its legs [m]
+  std::string reason;      ///< why shrunk or stopped; empty where used as asked
+};
+
+/// All problems of a program at once, in program order.
+struct Report {
+  std::vector<Problem> problems;
+
+  [[nodiscard]] bool ok() const;  ///< no errors (warnings may be there)
+  [[nodiscard]] std::string describe() const;
+};
+
+struct PlannedMotion {
+  Trajectory trajectory;
+  std::vector<CornerOutcome> corners;
+  Report report;  ///< warnings; for timed programs also the limits they break
+};
+
+struct PlannerOptions {
+  double position_tolerance = 5e-5;                ///< straight lines [m]
+  double angle_tolerance = 1.7453292519943296e-4;  ///< straight lines [rad] (0.01°)
+};
+
+/// Immutable; keeps the robot alive. Real-time: not. Threads: any, at once.
+class MotionPlanner {
+ public:
+  explicit MotionPlanner(RobotPtr robot, PlannerOptions options = {});
+
+  /// Looks at every step without moving anything; never throws for a fault of the program.
+  [[nodiscard]] Report check(const MotionProgram& program) const;
+  /// @throws MotionError: the first error of the report
+  [[nodiscard]] PlannedMotion plan(const MotionProgram& program) const;
+
+ private:
+  RobotPtr robot_;
+  PlannerOptions options_;
+};
+
+}  // namespace viapoint

@@ -1,0 +1,103 @@
+/// @file
+/// The 2 ms loop: a thread of its own with the machine's clock, or virtual time in the caller's.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "viapoint/core/joint_limits.hpp"
+#include "viapoint/realtime/clock.hpp"
+#include "viapoint/realtime/drive.hpp"
+#include "viapoint/realtime/motion_log.hpp"
+#include "viapoint/trajectory/trajectory.hpp"
+
+namespace viapoint {
+
+struct LoopOptions {
+  std::chrono::nanoseconds cycle{2'000'000};
+  int priority = 80;         ///< SCHED_FIFO
+  bool lock_memory = true;   ///< mlockall
+};
+
+/// Figures of one run.
+struct RunReport {
+  std::uint64_t cycles = 0;
+  std::uint64_t overruns = 0;           ///< cycles that woke a whole cycle late or more
+  double latency_p50 = 0.0, latency_p99 = 0.0, latency_max = 0.0;  ///< wake-up [s]
+  double compute_p50 = 0.0, compute_p99 = 0.0, compute_max = 0.0;  ///< the tick itself [s]
+  double wall_time = 0.0;               ///< first to last cycle [s]
+};
+
+/// One motion under way. All methods from any ordinary thread.
+class Job {
+ public:
+  virtual ~Job() = default;
+  /// True when the run ended within `timeout` [s]. @throws MotionError(kDriveFault) on a fault
+  virtual bool wait(double timeout) = 0;
+  virtual void pause() = 0;
+  virtual void resume() = 0;
+  virtual void stop() = 0;  ///< category 2: to rest on the path; then state kStopped
+  [[nodiscard]] virtual RunState state() const = 0;
+  [[nodiscard]] virtual double nominal_time() const = 0;  ///< progress [s]
+  [[nodiscard]] virtual double duration() const = 0;      ///< nominal [s]
+  [[nodiscard]] virtual std::uint64_t overruns() const = 0;
+  [[nodiscard]] virtual int move() const = 0;
+  /// Every cycle so far; complete after wait().
+  [[nodiscard]] virtual std::vector<LogRecord> log() const = 0;
+  [[nodiscard]] virtual RunReport report() const = 0;
+};
+
+/// Owns the drive, the interpolator and the thread. The thread runs while the arm is connected
+/// (holding position when idle). Destruction brings a run to rest on its path first.
+class ControllerLoop {
+ public:
+  /// Enables the drive and starts the loop thread.
+  /// @throws MotionError(kDriveFault)
+  ControllerLoop(std::unique_ptr<Drive> drive, const JointLimits& limits, LoopOptions options = {},
+                 std::unique_ptr<Clock> clock = std::make_unique<MonotonicClock>());
+  ~ControllerLoop();
+  ControllerLoop(const ControllerLoop&) = delete;
+  ControllerLoop& operator=(const ControllerLoop&) = delete;
+
+  /// Admits the motion and begins it at the next cycle. Refused before anything moves: a
+  /// certificate (made anew here, from the pieces) that does not hold, kNotAtStart when the arm
+  /// rests farther than 1e-6 rad or m from the motion's first point, kNotAtRest, kBusy.
+  [[nodiscard]] std::shared_ptr<Job> run(std::shared_ptr<const Trajectory> trajectory);
+  /// Share of the planned speed in [0, 1]; applies to this run and the next ones.
+  void set_override(double share);
+  [[nodiscard]] double override_share() const;
+  /// What the drive last measured.
+  [[nodiscard]] Measurement measured() const;
+  [[nodiscard]] bool busy() const;
+  /// Where the loop's set-point rests now.
+  [[nodiscard]] JointVector position() const;
+  /// One line each: what real-time right could not be had and what would give it. Empty: all had.
+  [[nodiscard]] std::vector<std::string> shortcomings() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Throws the first reason why `trajectory` must not run under `limits` from `position`.
+void admit(const Trajectory& trajectory, const JointLimits& limits, const JointVector& position);
+
+/// A command of a simulated run.
+struct TimedCommand {
+  enum class Kind { kOverride, kPause, kResume, kStop };
+  double time = 0.0;  ///< [s] from the start of the run
+  Kind kind = Kind::kOverride;
+  double value = 0.0;
+};
+
+/// The same Interpolator in virtual time, without thread or drive: one record a cycle, until the
+/// motion has ended or rests for good. A motion paused and never resumed ends when it rests.
+[[nodiscard]] std::vector<LogRecord> simulate(const Trajectory& trajectory,
+                                              const JointLimits& limits,
+                                              std::vector<TimedCommand> commands,
+                                              std::chrono::nanoseconds cycle);
+
+}  // namespace viapoint

@@ -1,0 +1,50 @@
+/// @file
+/// The proof that a motion keeps its limits: bounds on the pieces' own polynomials, not on samples.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "viapoint/core/error.hpp"
+#include "viapoint/core/joint_limits.hpp"
+#include "viapoint/trajectory/trajectory_piece.hpp"
+
+namespace viapoint {
+
+/// The worst of one quantity of one joint over a whole motion.
+struct Extremum {
+  double value = 0.0;  ///< largest magnitude, an upper bound within 1e-9 of what is reached
+  double share = 0.0;  ///< value over its limit
+  double time = 0.0;   ///< [s] where (midpoint of the tightest interval)
+  int move = 0;        ///< program step it happens in
+};
+
+/// Bounds over the whole of a motion, per joint where that makes sense.
+struct Certificate {
+  std::vector<Extremum> velocity, acceleration, jerk;  ///< (n,)
+  JointVector position_min, position_max;              ///< reached extremes [rad or m], (n,)
+  double start_speed = 0.0, end_speed = 0.0;           ///< largest |q̇| at the ends
+  double start_acceleration = 0.0, end_acceleration = 0.0;
+  /// Largest step of q, q̇, q̈ between neighbouring pieces.
+  double position_jump = 0.0, velocity_jump = 0.0, acceleration_jump = 0.0;
+  double path_deviation = 0.0;   ///< proven, outside zones [m]; filled in by the planner
+  double angle_deviation = 0.0;  ///< proven, outside zones [rad]; filled in by the planner
+  double zone_deviation = 0.0;   ///< largest cut of a corner at the tool [m]; by the planner
+  double manipulability = 0.0;   ///< smallest found along the motion; by the planner
+  /// Everything that is broken, worst first. Empty: the motion may run.
+  std::vector<Problem> problems;
+
+  [[nodiscard]] bool holds() const { return problems.empty(); }
+};
+
+/// Relative slack for rounding: a share up to 1 + kLimitSlack counts as kept.
+inline constexpr double kLimitSlack = 1e-6;
+
+/// Bounds every joint's position, velocity, acceleration and jerk, the coupled limits, the ends and
+/// the joints between pieces. Composes each piece's polynomials into one in τ, in Bernstein form,
+/// and subdivides until bound and value agree (Lane & Riesenfeld 1981 for the bound).
+/// Real-time: not. Cost: linear in pieces.
+[[nodiscard]] Certificate certify(std::span<const TrajectoryPiece> pieces,
+                                  const JointLimits& limits);
+
+}  // namespace viapoint
