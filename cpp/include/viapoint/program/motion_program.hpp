@@ -11,21 +11,9 @@
 #include "viapoint/core/error.hpp"
 #include "viapoint/core/joint_vector.hpp"
 #include "viapoint/core/pose.hpp"
+#include "viapoint/core/zone.hpp"
 
 namespace viapoint {
-
-/// How near a move must pass its point.
-enum class ZoneKind {
-  kFine,            ///< stop there
-  kRadius,          ///< leave the legs at most `size` m from the point, at the tool
-  kDeviation,       ///< path and legs at most `size` m apart, both ways, at the tool
-  kJointDeviation,  ///< the same over all joints, 2-norm [rad]
-};
-struct Zone {
-  ZoneKind kind = ZoneKind::kFine;
-  double size = 0.0;
-  bool operator==(const Zone&) const = default;
-};
 
 /// Where a move goes: joints, a full pose_base_tool, or a tool position alone.
 struct JointTarget {
