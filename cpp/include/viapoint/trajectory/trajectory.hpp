@@ -15,8 +15,10 @@ namespace viapoint {
 class Trajectory {
  public:
   Trajectory() = default;
-  /// Certifies against `limits`. @throws MotionError(kBadArgument) for pieces that are empty, of
-  /// differing joints, not finite, or of no duration.
+  /// Certifies against `limits`. Limits that are broken do not throw: they are the certificate's
+  /// problems.
+  /// @throws MotionError(kBadArgument) for no pieces, and for a piece of differing joints, not
+  ///   finite, of no duration or with more outputs than it can hold; kBadLimits
   Trajectory(std::vector<TrajectoryPiece> pieces, const JointLimits& limits);
 
   [[nodiscard]] int joints() const { return pieces_.empty() ? 0 : pieces_.front().joints; }
@@ -27,8 +29,9 @@ class Trajectory {
   [[nodiscard]] const Certificate& certificate() const { return certificate_; }
   /// The planner adds what it alone knows (deviations, manipulability).
   [[nodiscard]] Certificate& certificate() { return certificate_; }
-  /// State at t, clamped to [0, duration].
+  /// State at t [s], clamped to [0, duration]; at a knot that of the later piece. O(log pieces).
   [[nodiscard]] JointState at(double t) const;
+  /// Index of the piece that holds t (the later one at a knot, the last one after the end).
   [[nodiscard]] size_t piece_at(double t) const;
 
  private:

@@ -29,7 +29,8 @@ struct TrajectoryPiece {
   std::int32_t outputs = 0;     ///< how many of `output` count
   std::array<OutputChange, kMaxOutputsAPiece> output{};
 
-  /// q and its derivatives by nominal time τ in [0, duration]. Real-time: safe, O(n).
+  /// q and its derivatives by nominal time τ. Real-time: safe, O(n). Threads: any.
+  /// @pre 0 <= tau <= duration: time is not clamped, the polynomials go on outside
   [[nodiscard]] JointState at(double tau) const noexcept;
 };
 
