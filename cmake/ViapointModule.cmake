@@ -4,6 +4,11 @@
 function(viapoint_module name)
   cmake_parse_arguments(arg "" "" "DEPENDS;PUBLIC;PRIVATE" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/*.cpp")
+  if(NOT sources)  # a module that has not landed yet
+    add_library(viapoint_${name} INTERFACE)
+    add_library(viapoint::${name} ALIAS viapoint_${name})
+    return()
+  endif()
   add_library(viapoint_${name} STATIC ${sources})
   add_library(viapoint::${name} ALIAS viapoint_${name})
   target_include_directories(viapoint_${name}

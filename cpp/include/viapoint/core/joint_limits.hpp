@@ -14,9 +14,9 @@ struct JointLimits {
   JointVector velocity;
   JointVector acceleration;
   JointVector jerk;
-  CouplingMatrix coupling;         ///< (m, n); zero rows where nothing is coupled
-  CouplingVector coupling_lower;   ///< (m,)
-  CouplingVector coupling_upper;   ///< (m,)
+  CouplingMatrix coupling;        ///< (m, n); zero rows where nothing is coupled
+  CouplingVector coupling_lower;  ///< (m,)
+  CouplingVector coupling_upper;  ///< (m,)
 
   [[nodiscard]] int joints() const { return static_cast<int>(velocity.size()); }
   [[nodiscard]] int couplings() const { return static_cast<int>(coupling.rows()); }
