@@ -21,6 +21,7 @@ struct JointTarget {
 };
 struct PoseTarget {
   Pose pose_base_tool;
+  double correction = 0.0;  ///< CheckedPose::correction of the matrix it was given as
 };
 struct PositionTarget {
   Eigen::Vector3d position;

@@ -1,0 +1,260 @@
+// The program as a JSON file. One step a line, so that files diff well.
+#include <string>
+#include <utility>
+
+#include "program/json_reader.hpp"
+#include "viapoint/core/atomic_file.hpp"
+#include "viapoint/program/motion_program.hpp"
+
+namespace viapoint {
+namespace {
+
+using program_json::Json;
+using program_json::Node;
+
+constexpr int kFormat = 1;
+
+template <typename Enum>
+struct Word {
+  Enum value;
+  const char* text;
+};
+constexpr Word<Orientation> kOrientations[] = {
+    {Orientation::kLeast, "least"}, {Orientation::kWrist, "wrist"}, {Orientation::kFixed, "fixed"}};
+constexpr Word<ZoneKind> kZones[] = {{ZoneKind::kRadius, "radius"},
+                                     {ZoneKind::kDeviation, "deviation"},
+                                     {ZoneKind::kJointDeviation, "joint_deviation"}};
+constexpr Word<TimedSpace> kSpaces[] = {{TimedSpace::kJoint, "joint"},
+                                        {TimedSpace::kCartesian, "cartesian"}};
+
+template <typename Enum, size_t N>
+const char* word_of(Enum value, const Word<Enum> (&words)[N]) {
+  for (const auto& word : words) {
+    if (word.value == value) return word.text;
+  }
+  return words[0].text;
+}
+
+template <typename Enum, size_t N>
+Enum value_of(const Node& node, const Word<Enum> (&words)[N]) {
+  const std::string text = node.text();
+  std::string known;
+  for (const auto& word : words) {
+    if (text == word.text) return word.value;
+    known += (known.empty() ? "" : ", ") + std::string(word.text);
+  }
+  node.refuse("one of " + known);
+}
+
+// ---- writing
+
+Json json_of(const JointVector& q) { return std::vector<double>(q.begin(), q.end()); }
+
+Json json_of(const Target& target) {
+  Json json = Json::object();
+  if (const auto* joints = std::get_if<JointTarget>(&target)) {
+    json["joints"] = json_of(joints->q);
+  } else if (const auto* pose = std::get_if<PoseTarget>(&target)) {
+    Json rows = Json::array();
+    for (int row = 0; row < 4; ++row) {
+      const Eigen::RowVector4d values = pose->pose_base_tool.matrix().row(row);
+      rows.push_back(std::vector<double>(values.begin(), values.end()));
+    }
+    json["pose"] = rows;
+    if (pose->correction != 0.0) json["correction"] = pose->correction;
+  } else {
+    const Eigen::Vector3d& p = std::get<PositionTarget>(target).position;
+    json["position"] = std::vector<double>(p.begin(), p.end());
+  }
+  return json;
+}
+
+struct StepWriter {
+  Json& json;
+
+  void operator()(const PtpMove& move) const { json["ptp"] = json_of(move.target); }
+  void operator()(const LinMove& move) const {
+    json["lin"] = json_of(move.target);
+    json["orientation"] = word_of(move.orientation, kOrientations);
+  }
+  void operator()(const Wait& wait) const { json["wait"] = wait.seconds; }
+  void operator()(const SetOutput& output) const {
+    json["set_do"] = {{"index", output.index}, {"value", output.value}};
+  }
+  void operator()(const TimedMove& move) const {
+    Json points = Json::array();
+    for (const TimedPoint& point : move.points) {
+      Json json_point = json_of(point.target);
+      json_point["seconds"] = point.seconds;
+      points.push_back(json_point);
+    }
+    json["timed"] = {
+        {"space", word_of(move.space, kSpaces)}, {"t_acc", move.t_acc}, {"points", points}};
+  }
+};
+
+Json json_of(const Step& step) {
+  Json json = Json::object();
+  std::visit(StepWriter{json}, step.what);
+  const MoveOptions& options = step.options;
+  if (options.zone.kind != ZoneKind::kFine) {
+    json["zone"] = {{word_of(options.zone.kind, kZones), options.zone.size}};
+  }
+  if (options.speed) json["speed"] = *options.speed;
+  if (options.acceleration) json["acceleration"] = *options.acceleration;
+  if (options.scale) json["scale"] = *options.scale;
+  if (!step.source.file.empty() || step.source.line != 0) {
+    json["source"] = {{"file", step.source.file}, {"line", step.source.line}};
+  }
+  return json;
+}
+
+// ---- reading
+
+Pose pose_of(const Node& node) {
+  if (node.array_size() != 4) node.refuse("four rows of four numbers");
+  Eigen::Matrix4d matrix;
+  for (size_t row = 0; row < 4; ++row) {
+    const Node json_row = node.item(row);
+    if (json_row.array_size() != 4) json_row.refuse("four numbers");
+    for (size_t column = 0; column < 4; ++column) {
+      matrix(static_cast<int>(row), static_cast<int>(column)) = json_row.item(column).number();
+    }
+  }
+  try {
+    return checked_pose(matrix).pose;
+  } catch (const MotionError& error) {
+    node.refuse("a pose; " + error.problem().message);
+  }
+}
+
+Target target_of(const Node& node) {
+  node.only({"joints", "pose", "position", "correction", "seconds"});
+  if (node.has("joints")) return JointTarget{node.at("joints").joint_vector()};
+  if (node.has("pose")) {
+    PoseTarget target{pose_of(node.at("pose"))};
+    if (node.has("correction")) target.correction = node.at("correction").number();
+    return target;
+  }
+  if (node.has("position")) {
+    const Node position = node.at("position");
+    if (position.array_size() != 3) position.refuse("three numbers [m]");
+    return PositionTarget{
+        {position.item(0).number(), position.item(1).number(), position.item(2).number()}};
+  }
+  node.refuse("\"joints\", \"pose\" or \"position\"");
+}
+
+TimedMove timed_of(const Node& node) {
+  node.only({"space", "t_acc", "points"});
+  TimedMove move;
+  move.space = value_of(node.at("space"), kSpaces);
+  move.t_acc = node.at("t_acc").number();
+  const Node points = node.at("points");
+  for (size_t i = 0; i < points.array_size(); ++i) {
+    move.points.push_back({target_of(points.item(i)), points.item(i).at("seconds").number()});
+  }
+  return move;
+}
+
+Zone zone_of(const Node& node) {
+  node.require_object();
+  for (const auto& word : kZones) {
+    if (!node.has(word.text)) continue;
+    node.only({word.text});
+    const double size = node.at(word.text).number();
+    if (size < 0.0) node.at(word.text).refuse("a size of zero or more");
+    return {word.value, size};
+  }
+  node.refuse("{\"radius\": m}, {\"deviation\": m} or {\"joint_deviation\": rad}");
+}
+
+std::optional<double> wish(const Node& node, const char* key) {
+  if (!node.has(key)) return std::nullopt;
+  const double value = node.at(key).number();
+  if (!(value > 0.0)) node.at(key).refuse("a number above zero");
+  return value;
+}
+
+Step step_of(const Node& node) {
+  node.only({"ptp", "lin", "orientation", "wait", "set_do", "timed", "zone", "speed",
+             "acceleration", "scale", "source"});
+  Step step;
+  if (node.has("ptp")) {
+    step.what = PtpMove{target_of(node.at("ptp"))};
+  } else if (node.has("lin")) {
+    step.what = LinMove{target_of(node.at("lin")), value_of(node.at("orientation"), kOrientations)};
+  } else if (node.has("wait")) {
+    step.what = Wait{node.at("wait").number()};
+  } else if (node.has("set_do")) {
+    const Node output = node.at("set_do");
+    output.only({"index", "value"});
+    step.what = SetOutput{output.at("index").integer(), output.at("value").boolean()};
+  } else if (node.has("timed")) {
+    step.what = timed_of(node.at("timed"));
+  } else {
+    node.refuse("one of ptp, lin, wait, set_do, timed");
+  }
+  if (node.has("zone")) step.options.zone = zone_of(node.at("zone"));
+  step.options.speed = wish(node, "speed");
+  step.options.acceleration = wish(node, "acceleration");
+  step.options.scale = wish(node, "scale");
+  if (node.has("source")) {
+    const Node source = node.at("source");
+    source.only({"file", "line"});
+    step.source = {source.at("file").text(), source.at("line").integer()};
+  }
+  return step;
+}
+
+}  // namespace
+
+std::string to_json(const MotionProgram& program) {
+  const Json robot = {{"name", program.robot}, {"fingerprint", program.robot_fingerprint}};
+  std::string text = "{\n \"viapoint_program\": " + std::to_string(kFormat) +
+                     ",\n \"robot\": " + robot.dump() +
+                     ",\n \"start\": " + json_of(program.start).dump() + ",\n \"steps\": [";
+  const char* separator = "\n  ";
+  for (const Step& step : program.steps) {
+    text += separator + json_of(step).dump();
+    separator = ",\n  ";
+  }
+  return text + "\n ]\n}\n";
+}
+
+MotionProgram program_from_json(const std::string& text, const std::string& source) {
+  Json json;
+  try {
+    json = Json::parse(text);
+  } catch (const Json::parse_error& error) {
+    Problem problem;
+    problem.code = ErrorCode::kBadProgram;
+    problem.file = source;
+    problem.message = std::string("not a JSON file, or cut short: ") + error.what();
+    throw MotionError(std::move(problem));
+  }
+  const Node root(json, "", source);
+  root.only({"viapoint_program", "robot", "start", "steps"});
+  if (root.at("viapoint_program").integer() != kFormat) {
+    root.at("viapoint_program").refuse("format " + std::to_string(kFormat));
+  }
+  const Node robot = root.at("robot");
+  robot.only({"name", "fingerprint"});
+  MotionProgram program;
+  program.robot = robot.at("name").text();
+  program.robot_fingerprint = robot.at("fingerprint").text();
+  program.start = root.at("start").joint_vector();
+  const Node steps = root.at("steps");
+  for (size_t i = 0; i < steps.array_size(); ++i) program.steps.push_back(step_of(steps.item(i)));
+  return program;
+}
+
+void save_program(const MotionProgram& program, const std::string& path) {
+  write_file_atomically(path, to_json(program));
+}
+
+MotionProgram load_program(const std::string& path) {
+  return program_from_json(read_file(path), path);
+}
+
+}  // namespace viapoint
