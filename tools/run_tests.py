@@ -64,7 +64,7 @@ def run(title: str, command: list[str], report: Path, environment: dict[str, str
     A runner that ends badly although no test failed (a crash, a collection error) counts as one
     failure, so that it cannot pass unseen.
     """
-    print(f"{title}: {' '.join(command)}", flush=True)
+    print(f"Running {title}", flush=True)
     report.unlink(missing_ok=True)
     code = subprocess.run(command, cwd=ROOT, env=environment, check=False).returncode
     if not report.exists():
@@ -75,7 +75,6 @@ def run(title: str, command: list[str], report: Path, environment: dict[str, str
     if code != 0 and not nothing_selected and counts.failed == 0:
         print(f"error: {title} ended with code {code}", file=sys.stderr)
         counts += Counts(failed=1)
-    print(f"{title}: {counts.line()}", flush=True)
     return counts
 
 
