@@ -1,0 +1,57 @@
+// Arrays across the border, poses and atomic files.
+#include "bindings.hpp"
+#include "viapoint/core/atomic_file.hpp"
+
+namespace viapoint::python {
+
+JointVector joints_from(const Eigen::VectorXd& values, const char* name, int expected) {
+  const auto size = static_cast<int>(values.size());
+  if (size < 1 || size > kMaxJoints) {
+    throw MotionError(ErrorCode::kBadArgument, std::string(name) + " has " + std::to_string(size) +
+                                                   " values; allowed are 1 to " +
+                                                   std::to_string(kMaxJoints) + ".");
+  }
+  if (expected >= 0 && size != expected) {
+    throw MotionError(ErrorCode::kBadArgument, std::string(name) + " has " + std::to_string(size) +
+                                                   " values; the robot has " +
+                                                   std::to_string(expected) + " joints.");
+  }
+  if (!values.allFinite()) {
+    throw MotionError(ErrorCode::kBadArgument,
+                      std::string(name) + " holds NaN or infinity; all values must be finite.");
+  }
+  return values;
+}
+
+Pose pose_from(const Eigen::Matrix4d& matrix) { return checked_pose(matrix).pose; }
+
+void bind_core(py::module_& m) {
+  m.attr("MAX_JOINTS") = kMaxJoints;
+  m.attr("ROTATION_ROUNDING") = kRotationRounding;
+  m.def(
+      "checked_pose",
+      [](const Eigen::Matrix4d& matrix) {
+        const CheckedPose checked = checked_pose(matrix);
+        return std::pair<Eigen::Matrix4d, double>(checked.pose.matrix(), checked.correction);
+      },
+      py::arg("matrix"),
+      "The pose with its rotation made exact, and the largest element by which it was changed.");
+  m.def(
+      "rotation_log", [](const Eigen::Matrix3d& rotation) { return rotation_log(rotation); },
+      py::arg("rotation"), "Rotation vector [rad] of a rotation matrix.");
+  m.def(
+      "rotation_exp", [](const Eigen::Vector3d& vector) { return rotation_exp(vector); },
+      py::arg("vector"), "Rotation matrix of a rotation vector [rad].");
+  m.def(
+      "write_file_atomically",
+      [](const std::string& path, const std::string& content) {
+        const py::gil_scoped_release release;
+        write_file_atomically(path, content);
+      },
+      py::arg("path"), py::arg("content"),
+      "Writes a whole file: a crash leaves the old content or the new, never a part.");
+  m.def("read_file", &read_file, py::arg("path"), py::call_guard<py::gil_scoped_release>(),
+        "The whole text of a file.");
+}
+
+}  // namespace viapoint::python

@@ -1,0 +1,232 @@
+// The planner, planned motions and their proof, and sampling into numpy at C++ speed.
+#include <cmath>
+
+#include "bindings.hpp"
+
+namespace viapoint::python {
+namespace {
+
+using Vector = Eigen::VectorXd;
+
+/// A step shorter than this share of dt is rounding, and merges with the last one.
+constexpr double kStepRounding = 1e-9;
+
+struct SampleArrays {
+  Array t, q, qd, qdd, qddd;
+  py::array_t<std::int32_t> move;
+
+  SampleArrays(py::ssize_t count, py::ssize_t joints)
+      : t(count),
+        q({count, joints}),
+        qd({count, joints}),
+        qdd({count, joints}),
+        qddd({count, joints}),
+        move(count) {}
+
+  [[nodiscard]] py::dict dict() const {
+    py::dict out;
+    out["t"] = t;
+    out["q"] = q;
+    out["qd"] = qd;
+    out["qdd"] = qdd;
+    out["qddd"] = qddd;
+    out["move"] = move;
+    return out;
+  }
+};
+
+/// Writes the states at `times` (ascending, within the motion), walking the pieces once.
+void fill(const Trajectory& trajectory, SampleArrays& arrays, double* times, py::ssize_t count) {
+  const auto joints = static_cast<py::ssize_t>(trajectory.joints());
+  double* q = arrays.q.mutable_data();
+  double* qd = arrays.qd.mutable_data();
+  double* qdd = arrays.qdd.mutable_data();
+  double* qddd = arrays.qddd.mutable_data();
+  std::int32_t* move = arrays.move.mutable_data();
+  const py::gil_scoped_release release;
+  const std::vector<TrajectoryPiece>& pieces = trajectory.pieces();
+  size_t at = 0;
+  for (py::ssize_t k = 0; k < count; ++k) {
+    while (at + 1 < pieces.size() && times[k] >= trajectory.start_of(at + 1)) ++at;
+    const double tau = std::min(times[k] - trajectory.start_of(at), pieces[at].duration);
+    const JointState state = pieces[at].at(tau);
+    const py::ssize_t begin = k * joints;
+    Eigen::Map<Vector>(q + begin, joints) = state.q;
+    Eigen::Map<Vector>(qd + begin, joints) = state.qd;
+    Eigen::Map<Vector>(qdd + begin, joints) = state.qdd;
+    Eigen::Map<Vector>(qddd + begin, joints) = state.qddd;
+    move[k] = pieces[at].move;
+  }
+}
+
+/// 0, dt, 2 dt, … and the exact end; the last step may be shorter.
+py::dict sample(const MotionHandle& motion, double dt) {
+  if (!(dt > 0.0) || !std::isfinite(dt)) {
+    throw MotionError(ErrorCode::kBadArgument,
+                      "dt is " + std::to_string(dt) + " s; it must be positive and finite.");
+  }
+  const double duration = motion.trajectory->duration();
+  const double steps = std::ceil(duration / dt - kStepRounding);
+  constexpr double kMostSamples = 1e8;
+  if (steps > kMostSamples) {
+    throw MotionError(ErrorCode::kBadArgument,
+                      "dt is " + std::to_string(dt) + " s, which asks for more than 1e8 samples.");
+  }
+  const auto count = static_cast<py::ssize_t>(steps) + 1;
+  SampleArrays arrays(count, motion.trajectory->joints());
+  double* t = arrays.t.mutable_data();
+  for (py::ssize_t k = 0; k + 1 < count; ++k) t[k] = static_cast<double>(k) * dt;
+  t[count - 1] = duration;
+  fill(*motion.trajectory, arrays, t, count);
+  return arrays.dict();
+}
+
+/// At the given instants [s], ascending; outside the motion the ends hold.
+py::dict sample_at(const MotionHandle& motion, const Vector& times) {
+  const auto count = static_cast<py::ssize_t>(times.size());
+  SampleArrays arrays(count, motion.trajectory->joints());
+  double* t = arrays.t.mutable_data();
+  for (py::ssize_t k = 0; k < count; ++k) {
+    if (!std::isfinite(times[k]) || (k > 0 && times[k] < times[k - 1])) {
+      throw MotionError(ErrorCode::kBadArgument, "times must be finite and ascending; value " +
+                                                     std::to_string(k) + " is " +
+                                                     std::to_string(times[k]) + ".");
+    }
+    t[k] = std::min(std::max(times[k], 0.0), motion.trajectory->duration());
+  }
+  fill(*motion.trajectory, arrays, t, count);
+  return arrays.dict();
+}
+
+template <typename Member>
+Vector column(const std::vector<Extremum>& extrema, Member member) {
+  Vector out(static_cast<Eigen::Index>(extrema.size()));
+  for (size_t i = 0; i < extrema.size(); ++i)
+    out[static_cast<Eigen::Index>(i)] = extrema[i].*member;
+  return out;
+}
+
+std::string zone_name(ZoneKind kind) {
+  switch (kind) {
+    case ZoneKind::kFine:
+      return "fine";
+    case ZoneKind::kRadius:
+      return "radius";
+    case ZoneKind::kDeviation:
+      return "deviation";
+    case ZoneKind::kJointDeviation:
+      return "joint_deviation";
+  }
+  return "fine";
+}
+
+void bind_certificate(py::module_& m) {
+  py::class_<Extremum>(m, "Extremum", "The worst of one quantity of one joint.")
+      .def_readonly("value", &Extremum::value, "Largest magnitude [SI, rad].")
+      .def_readonly("share", &Extremum::share, "Value over its limit.")
+      .def_readonly("time", &Extremum::time, "Where [s].")
+      .def_readonly("move", &Extremum::move, "Program step it happens in.")
+      .def("__repr__", [](const Extremum& e) {
+        return "<Extremum " + std::to_string(e.value) + ", share " + std::to_string(e.share) +
+               ", t " + std::to_string(e.time) + " s, move " + std::to_string(e.move) + ">";
+      });
+  py::class_<Certificate>(m, "Certificate", "Proven bounds over a whole motion.")
+      .def_readonly("velocity", &Certificate::velocity, "One Extremum a joint.")
+      .def_readonly("acceleration", &Certificate::acceleration, "One Extremum a joint.")
+      .def_readonly("jerk", &Certificate::jerk, "One Extremum a joint.")
+      .def_property_readonly(
+          "velocity_share",
+          [](const Certificate& c) { return column(c.velocity, &Extremum::share); },
+          "(n,) worst share of the velocity limit")
+      .def_property_readonly(
+          "acceleration_share",
+          [](const Certificate& c) { return column(c.acceleration, &Extremum::share); },
+          "(n,) worst share of the acceleration limit")
+      .def_property_readonly(
+          "jerk_share", [](const Certificate& c) { return column(c.jerk, &Extremum::share); },
+          "(n,) worst share of the jerk limit")
+      .def_property_readonly(
+          "position_min", [](const Certificate& c) { return Vector(c.position_min); },
+          "(n,) least joint position reached [rad or m]")
+      .def_property_readonly(
+          "position_max", [](const Certificate& c) { return Vector(c.position_max); },
+          "(n,) largest joint position reached [rad or m]")
+      .def_readonly("start_speed", &Certificate::start_speed, "Largest |qd| at the start.")
+      .def_readonly("end_speed", &Certificate::end_speed, "Largest |qd| at the end.")
+      .def_readonly("start_acceleration", &Certificate::start_acceleration)
+      .def_readonly("end_acceleration", &Certificate::end_acceleration)
+      .def_readonly("position_jump", &Certificate::position_jump, "Largest step between pieces.")
+      .def_readonly("velocity_jump", &Certificate::velocity_jump)
+      .def_readonly("acceleration_jump", &Certificate::acceleration_jump)
+      .def_readonly("path_deviation", &Certificate::path_deviation, "Proven, outside zones [m].")
+      .def_readonly("angle_deviation", &Certificate::angle_deviation,
+                    "Proven, outside zones [rad].")
+      .def_readonly("zone_deviation", &Certificate::zone_deviation,
+                    "Largest cut of a corner at the tool [m].")
+      .def_readonly("manipulability", &Certificate::manipulability,
+                    "Smallest found along the motion.")
+      .def_readonly("problems", &Certificate::problems, "Everything that is broken, worst first.")
+      .def_property_readonly("holds", &Certificate::holds, "True when the motion may run.");
+  py::class_<CornerOutcome>(m, "Corner", "What became of the zone of one move.")
+      .def_readonly("move", &CornerOutcome::move, "Index of the move, from 0.")
+      .def_property_readonly(
+          "kind", [](const CornerOutcome& c) { return zone_name(c.asked.kind); },
+          "\"fine\", \"radius\", \"deviation\" or \"joint_deviation\".")
+      .def_property_readonly(
+          "asked", [](const CornerOutcome& c) { return c.asked.size; }, "Size asked for.")
+      .def_readonly("stopped", &CornerOutcome::stopped, "The arm stops at the point.")
+      .def_readonly("used", &CornerOutcome::used, "Size really used, in the zone's own unit.")
+      .def_readonly("cut", &CornerOutcome::cut, "Proven largest distance from the legs [m].")
+      .def_readonly("reason", &CornerOutcome::reason, "Why shrunk or stopped.")
+      .def("__repr__", [](const CornerOutcome& c) {
+        return "<Corner move " + std::to_string(c.move) + ", " + zone_name(c.asked.kind) +
+               (c.stopped ? ", stops" : ", used " + std::to_string(c.used)) + ">";
+      });
+}
+
+}  // namespace
+
+void bind_planning(py::module_& m) {
+  bind_certificate(m);
+  py::class_<MotionHandle>(m, "PlannedMotion", "A finished motion and its proof.")
+      .def_property_readonly("duration",
+                             [](const MotionHandle& p) { return p.trajectory->duration(); })
+      .def_property_readonly("joints", [](const MotionHandle& p) { return p.trajectory->joints(); })
+      .def_property_readonly("pieces",
+                             [](const MotionHandle& p) { return p.trajectory->pieces().size(); })
+      .def_property_readonly("certificate",
+                             [](const MotionHandle& p) { return p.trajectory->certificate(); })
+      .def_readonly("corners", &MotionHandle::corners)
+      .def_readonly("problems", &MotionHandle::problems)
+      .def("sample", &sample, py::arg("dt"))
+      .def("sample_at", &sample_at, py::arg("times"));
+  m.def(
+      "check",
+      [](const RobotHandle& robot, const MotionProgram& program, double position_tolerance,
+         double angle_tolerance) {
+        return MotionPlanner(robot.robot, {position_tolerance, angle_tolerance})
+            .check(program)
+            .problems;
+      },
+      py::arg("robot"), py::arg("program"), py::arg("position_tolerance"),
+      py::arg("angle_tolerance"), py::call_guard<py::gil_scoped_release>(),
+      "Every problem of a program, in program order.");
+  m.def(
+      "plan",
+      [](const RobotHandle& robot, const MotionProgram& program, double position_tolerance,
+         double angle_tolerance) {
+        PlannedMotion planned =
+            MotionPlanner(robot.robot, {position_tolerance, angle_tolerance}).plan(program);
+        return MotionHandle{robot.robot,
+                            std::make_shared<const Trajectory>(std::move(planned.trajectory)),
+                            std::move(planned.corners), std::move(planned.report.problems)};
+      },
+      py::arg("robot"), py::arg("program"), py::arg("position_tolerance"),
+      py::arg("angle_tolerance"), py::call_guard<py::gil_scoped_release>(),
+      "Plans; raises the first error of the report.");
+  const PlannerOptions defaults;
+  m.attr("POSITION_TOLERANCE") = defaults.position_tolerance;
+  m.attr("ANGLE_TOLERANCE") = defaults.angle_tolerance;
+}
+
+}  // namespace viapoint::python

@@ -1,0 +1,148 @@
+// Motion programs: steps are appended from Python, which checks the arguments first.
+#include "bindings.hpp"
+
+namespace viapoint::python {
+namespace {
+
+Zone zone_from(const std::string& kind, double size) {
+  if (kind == "fine") return {ZoneKind::kFine, 0.0};
+  if (kind == "radius") return {ZoneKind::kRadius, size};
+  if (kind == "deviation") return {ZoneKind::kDeviation, size};
+  if (kind == "joint_deviation") return {ZoneKind::kJointDeviation, size};
+  throw MotionError(ErrorCode::kBadArgument, "\"" + kind + "\" is no kind of zone.",
+                    {"Use \"fine\", \"radius\", \"deviation\" or \"joint_deviation\"."});
+}
+
+Orientation orientation_from(const std::string& name) {
+  if (name == "least") return Orientation::kLeast;
+  if (name == "wrist") return Orientation::kWrist;
+  if (name == "fixed") return Orientation::kFixed;
+  throw MotionError(ErrorCode::kBadArgument, "\"" + name + "\" is no way of orientation.",
+                    {"Use \"least\", \"wrist\" or \"fixed\"."});
+}
+
+TimedSpace space_from(const std::string& name) {
+  if (name == "joint") return TimedSpace::kJoint;
+  if (name == "cartesian") return TimedSpace::kCartesian;
+  throw MotionError(ErrorCode::kBadArgument, "\"" + name + "\" is no space of a timed program.",
+                    {"Use \"joint\" or \"cartesian\"."});
+}
+
+const Step& step_at(const MotionProgram& program, int index) {
+  if (index < 0 || index >= static_cast<int>(program.steps.size())) {
+    throw py::index_error("the program has no step " + std::to_string(index));
+  }
+  return program.steps[static_cast<size_t>(index)];
+}
+
+std::string kind_of(const Step& step) {
+  struct Name {
+    std::string operator()(const PtpMove&) const { return "movej"; }
+    std::string operator()(const LinMove&) const { return "movel"; }
+    std::string operator()(const Wait&) const { return "wait"; }
+    std::string operator()(const SetOutput&) const { return "set_do"; }
+    std::string operator()(const TimedMove&) const { return "timed"; }
+  };
+  return std::visit(Name{}, step.what);
+}
+
+void append(MotionProgram& program, decltype(Step::what) what, const MoveOptions& options,
+            std::string file, int line) {
+  program.steps.push_back({std::move(what), options, {std::move(file), line}});
+}
+
+void bind_parts(py::module_& m) {
+  py::class_<TargetHandle>(m, "Target", "Where a move goes.")
+      .def_static(
+          "joints",
+          [](const Eigen::VectorXd& q) { return TargetHandle{JointTarget{joints_from(q, "q")}}; },
+          py::arg("q"))
+      .def_static(
+          "pose",
+          [](const Eigen::Matrix4d& pose) { return TargetHandle{PoseTarget{pose_from(pose)}}; },
+          py::arg("pose"))
+      .def_static(
+          "position",
+          [](const Eigen::Vector3d& position) { return TargetHandle{PositionTarget{position}}; },
+          py::arg("position"));
+  py::class_<MoveOptions>(m, "MoveOptions", "Wishes of one move.")
+      .def(py::init([](std::optional<double> speed, std::optional<double> acceleration,
+                       std::optional<double> scale, const std::string& zone, double size) {
+             return MoveOptions{speed, acceleration, scale, zone_from(zone, size)};
+           }),
+           py::kw_only(), py::arg("speed") = py::none(), py::arg("acceleration") = py::none(),
+           py::arg("scale") = py::none(), py::arg("zone") = "fine", py::arg("size") = 0.0);
+}
+
+}  // namespace
+
+void bind_program(py::module_& m) {
+  bind_parts(m);
+  py::class_<MotionProgram>(m, "MotionProgram", "Moves, waits and outputs, in order.")
+      .def(py::init([](const RobotHandle& robot, const Eigen::VectorXd& start) {
+             return MotionProgram{robot.robot->name(),
+                                  robot.robot->fingerprint(),
+                                  joints_from(start, "start", robot.robot->joints()),
+                                  {}};
+           }),
+           py::arg("robot"), py::arg("start"))
+      .def_readonly("robot", &MotionProgram::robot)
+      .def_readonly("robot_fingerprint", &MotionProgram::robot_fingerprint)
+      .def_property_readonly("start",
+                             [](const MotionProgram& p) { return Eigen::VectorXd(p.start); })
+      .def("__len__", [](const MotionProgram& p) { return p.steps.size(); })
+      .def(
+          "kind", [](const MotionProgram& p, int step) { return kind_of(step_at(p, step)); },
+          py::arg("step"), "\"movej\", \"movel\", \"wait\", \"set_do\" or \"timed\".")
+      .def(
+          "source",
+          [](const MotionProgram& p, int step) {
+            const SourceLine& source = step_at(p, step).source;
+            return std::pair<std::string, int>(source.file, source.line);
+          },
+          py::arg("step"), "File and line (from 1; 0 where unknown) of a step.")
+      .def(
+          "add_movej",
+          [](MotionProgram& p, const TargetHandle& target, const MoveOptions& options,
+             std::string file,
+             int line) { append(p, PtpMove{target.target}, options, std::move(file), line); },
+          py::arg("target"), py::arg("options"), py::arg("file"), py::arg("line"))
+      .def(
+          "add_movel",
+          [](MotionProgram& p, const TargetHandle& target, const std::string& orientation,
+             const MoveOptions& options, std::string file, int line) {
+            append(p, LinMove{target.target, orientation_from(orientation)}, options,
+                   std::move(file), line);
+          },
+          py::arg("target"), py::arg("orientation"), py::arg("options"), py::arg("file"),
+          py::arg("line"))
+      .def(
+          "add_wait",
+          [](MotionProgram& p, double seconds, std::string file, int line) {
+            append(p, Wait{seconds}, {}, std::move(file), line);
+          },
+          py::arg("seconds"), py::arg("file"), py::arg("line"))
+      .def(
+          "add_set_do",
+          [](MotionProgram& p, int index, bool value, std::string file, int line) {
+            append(p, SetOutput{index, value}, {}, std::move(file), line);
+          },
+          py::arg("index"), py::arg("value"), py::arg("file"), py::arg("line"))
+      .def(
+          "add_timed",
+          [](MotionProgram& p, const std::vector<std::pair<TargetHandle, double>>& points,
+             double t_acc, const std::string& space, std::string file, int line) {
+            TimedMove move{{}, t_acc, space_from(space)};
+            for (const auto& [target, seconds] : points) {
+              move.points.push_back({target.target, seconds});
+            }
+            append(p, std::move(move), {}, std::move(file), line);
+          },
+          py::arg("points"), py::arg("t_acc"), py::arg("space"), py::arg("file"), py::arg("line"))
+      .def("to_json", [](const MotionProgram& p) { return to_json(p); })
+      .def("save", &save_program, py::arg("path"));
+  m.def("program_from_json", &program_from_json, py::arg("text"), py::arg("source"));
+  m.def("load_program", &load_program, py::arg("path"));
+}
+
+}  // namespace viapoint::python

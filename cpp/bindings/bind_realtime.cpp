@@ -1,0 +1,224 @@
+// The 2 ms loop on a simulated drive, its jobs and logs, and runs in virtual time.
+#include <chrono>
+#include <cmath>
+#include <tuple>
+
+#include "bindings.hpp"
+#include "viapoint/drives/simulated_drive.hpp"
+
+namespace viapoint::python {
+namespace {
+
+using Vector = Eigen::VectorXd;
+using Release = py::gil_scoped_release;
+
+/// A loop that Python can close before the object itself goes.
+struct LoopHandle {
+  std::unique_ptr<ControllerLoop> loop;
+  int joints = 0;
+
+  LoopHandle(std::unique_ptr<ControllerLoop> owned, int count)
+      : loop(std::move(owned)), joints(count) {}
+  LoopHandle(const LoopHandle&) = delete;
+  LoopHandle& operator=(const LoopHandle&) = delete;
+  ~LoopHandle() { close(); }
+
+  [[nodiscard]] ControllerLoop& open() const {
+    if (loop == nullptr) {
+      throw MotionError(ErrorCode::kDriveFault, "The arm is no longer connected.",
+                        {"Connect again: viapoint.connect(...)."});
+    }
+    return *loop;
+  }
+  /// A run under way is brought to rest first, which takes time: the GIL is not held meanwhile.
+  void close() {
+    if (loop == nullptr) return;
+    const Release release;
+    loop.reset();
+  }
+};
+
+struct JobHandle {
+  std::shared_ptr<Job> job;
+  int joints = 0;
+};
+
+std::unique_ptr<LoopHandle> make_loop(const RobotHandle& robot, const Vector& start, double cycle,
+                                      int priority, bool lock_memory) {
+  if (!(cycle >= 1e-4) || !(cycle <= 1.0)) {
+    throw MotionError(ErrorCode::kBadArgument,
+                      "cycle is " + std::to_string(cycle) + " s; allowed are 0.0001 s to 1 s.");
+  }
+  const int joints = robot.robot->joints();
+  const JointVector q = joints_from(start, "start", joints);
+  LoopOptions options;
+  options.cycle = std::chrono::nanoseconds(std::llround(cycle * 1e9));
+  options.priority = priority;
+  options.lock_memory = lock_memory;
+  const Release release;
+  return std::make_unique<LoopHandle>(
+      std::make_unique<ControllerLoop>(std::make_unique<SimulatedDrive>(q), robot.robot->limits(),
+                                       options),
+      joints);
+}
+
+TimedCommand command_from(double time, const std::string& kind, double value) {
+  using Kind = TimedCommand::Kind;
+  if (!std::isfinite(time) || time < 0.0) {
+    throw MotionError(ErrorCode::kBadArgument,
+                      "A command's time is " + std::to_string(time) + " s; it must be 0 or later.");
+  }
+  if (kind == "override") {
+    if (!(value >= 0.0 && value <= 1.0)) {
+      throw MotionError(ErrorCode::kBadArgument,
+                        "An override is " + std::to_string(value) + "; it must be in [0, 1].");
+    }
+    return {time, Kind::kOverride, value};
+  }
+  if (kind == "pause") return {time, Kind::kPause, 0.0};
+  if (kind == "resume") return {time, Kind::kResume, 0.0};
+  if (kind == "stop") return {time, Kind::kStop, 0.0};
+  throw MotionError(ErrorCode::kBadArgument, "\"" + kind + "\" is no command.",
+                    {"Use \"override\", \"pause\", \"resume\" or \"stop\"."});
+}
+
+template <typename T, typename Get>
+py::array_t<T> column(const std::vector<LogRecord>& records, Get get) {
+  py::array_t<T> out(static_cast<py::ssize_t>(records.size()));
+  T* data = out.mutable_data();
+  for (const LogRecord& record : records) *data++ = static_cast<T>(get(record));
+  return out;
+}
+
+Array rows(const std::vector<LogRecord>& records, int joints, JointVector LogRecord::* member) {
+  Array out({static_cast<py::ssize_t>(records.size()), static_cast<py::ssize_t>(joints)});
+  double* data = out.mutable_data();
+  for (const LogRecord& record : records) {
+    const JointVector& values = record.*member;
+    // A record without a value (nothing measured in a simulated run) reads as NaN.
+    for (int i = 0; i < joints; ++i) *data++ = i < values.size() ? values[i] : std::nan("");
+  }
+  return out;
+}
+
+void bind_job(py::module_& m) {
+  py::class_<RunReport>(m, "RunReport", "Figures of one run; times in seconds.")
+      .def_readonly("cycles", &RunReport::cycles)
+      .def_readonly("overruns", &RunReport::overruns,
+                    "Cycles that woke a whole cycle late or more.")
+      .def_readonly("latency_p50", &RunReport::latency_p50)
+      .def_readonly("latency_p99", &RunReport::latency_p99)
+      .def_readonly("latency_max", &RunReport::latency_max)
+      .def_readonly("compute_p50", &RunReport::compute_p50)
+      .def_readonly("compute_p99", &RunReport::compute_p99)
+      .def_readonly("compute_max", &RunReport::compute_max)
+      .def_readonly("wall_time", &RunReport::wall_time, "First to last cycle.");
+  py::class_<JobHandle>(m, "Job", "One motion under way.")
+      .def(
+          "wait", [](const JobHandle& j, double timeout) { return j.job->wait(timeout); },
+          py::arg("timeout"), py::call_guard<Release>())
+      .def(
+          "pause", [](const JobHandle& j) { j.job->pause(); }, py::call_guard<Release>())
+      .def(
+          "resume", [](const JobHandle& j) { j.job->resume(); }, py::call_guard<Release>())
+      .def(
+          "stop", [](const JobHandle& j) { j.job->stop(); }, py::call_guard<Release>())
+      .def_property_readonly(
+          "state", [](const JobHandle& j) { return std::string(to_string(j.job->state())); })
+      .def_property_readonly("nominal_time",
+                             [](const JobHandle& j) { return j.job->nominal_time(); })
+      .def_property_readonly("duration", [](const JobHandle& j) { return j.job->duration(); })
+      .def_property_readonly("overruns", [](const JobHandle& j) { return j.job->overruns(); })
+      .def_property_readonly("move", [](const JobHandle& j) { return j.job->move(); })
+      .def("log",
+           [](const JobHandle& j) {
+             std::vector<LogRecord> records;
+             {
+               const Release release;
+               records = j.job->log();
+             }
+             return log_arrays(records, j.joints);
+           })
+      .def("report", [](const JobHandle& j) { return j.job->report(); }, py::call_guard<Release>());
+}
+
+}  // namespace
+
+py::dict log_arrays(const std::vector<LogRecord>& records, int joints) {
+  py::dict out;
+  out["cycle"] = column<std::uint64_t>(records, [](const LogRecord& r) { return r.cycle; });
+  out["stamp"] = column<std::int64_t>(records, [](const LogRecord& r) { return r.stamp; });
+  out["latency"] = column<std::int64_t>(records, [](const LogRecord& r) { return r.latency; });
+  out["compute"] = column<std::int64_t>(records, [](const LogRecord& r) { return r.compute; });
+  out["nominal_time"] = column<double>(records, [](const LogRecord& r) { return r.nominal_time; });
+  out["rate"] = column<double>(records, [](const LogRecord& r) { return r.rate; });
+  out["move"] = column<std::int32_t>(records, [](const LogRecord& r) { return r.move; });
+  out["state"] = column<std::uint8_t>(records, [](const LogRecord& r) { return r.state; });
+  out["outputs"] = column<std::uint64_t>(records, [](const LogRecord& r) { return r.outputs; });
+  out["q"] = rows(records, joints, &LogRecord::q);
+  out["qd"] = rows(records, joints, &LogRecord::qd);
+  out["qdd"] = rows(records, joints, &LogRecord::qdd);
+  out["qddd"] = rows(records, joints, &LogRecord::qddd);
+  out["measured"] = rows(records, joints, &LogRecord::measured);
+  return out;
+}
+
+void bind_realtime(py::module_& m) {
+  bind_job(m);
+  py::class_<LoopHandle>(m, "ControllerLoop", "The 2 ms loop over a simulated drive.")
+      .def(py::init(&make_loop), py::arg("robot"), py::arg("start"), py::kw_only(),
+           py::arg("cycle"), py::arg("priority"), py::arg("lock_memory"))
+      .def(
+          "run",
+          [](const LoopHandle& l, const MotionHandle& motion) {
+            ControllerLoop& loop = l.open();
+            const Release release;
+            return JobHandle{loop.run(motion.trajectory), l.joints};
+          },
+          py::arg("motion"), py::keep_alive<0, 1>())
+      .def_property(
+          "override", [](const LoopHandle& l) { return l.open().override_share(); },
+          [](const LoopHandle& l, double share) { l.open().set_override(share); })
+      .def_property_readonly("measured",
+                             [](const LoopHandle& l) { return Vector(l.open().measured().q); })
+      .def_property_readonly("position",
+                             [](const LoopHandle& l) { return Vector(l.open().position()); })
+      .def_property_readonly("busy", [](const LoopHandle& l) { return l.open().busy(); })
+      .def_property_readonly("is_open", [](const LoopHandle& l) { return l.loop != nullptr; })
+      .def_property_readonly("shortcomings",
+                             [](const LoopHandle& l) { return l.open().shortcomings(); })
+      .def("close", &LoopHandle::close);
+  m.def(
+      "admit",
+      [](const MotionHandle& motion, const Vector& position) {
+        admit(*motion.trajectory, motion.robot->limits(),
+              joints_from(position, "position", motion.robot->joints()));
+      },
+      py::arg("motion"), py::arg("position"),
+      "Raises the first reason why the motion must not run from `position`.");
+  m.def(
+      "simulate",
+      [](const MotionHandle& motion,
+         const std::vector<std::tuple<double, std::string, double>>& commands, double cycle) {
+        std::vector<TimedCommand> timed;
+        for (const auto& [time, kind, value] : commands) {
+          timed.push_back(command_from(time, kind, value));
+        }
+        std::vector<LogRecord> records;
+        {
+          const Release release;
+          records = simulate(*motion.trajectory, motion.robot->limits(), std::move(timed),
+                             std::chrono::nanoseconds(std::llround(cycle * 1e9)));
+        }
+        return log_arrays(records, motion.trajectory->joints());
+      },
+      py::arg("motion"), py::arg("commands"), py::arg("cycle"),
+      "The interpolator in virtual time: one record a cycle.");
+  std::vector<std::string> states;
+  for (int i = 0; i <= static_cast<int>(RunState::kFault); ++i) {
+    states.emplace_back(to_string(static_cast<RunState>(i)));
+  }
+  m.attr("RUN_STATES") = py::tuple(py::cast(states));
+}
+
+}  // namespace viapoint::python
