@@ -29,7 +29,8 @@ enum class ErrorCode {
   kSingular,           ///< the arm is at or too near a singularity
   kBranchChange,       ///< start and goal are reachable only on different branches
   kUncontrolled,       ///< the arm has too few joints to hold every coordinate asked for
-  kZeroLength,         ///< a move that goes nowhere
+  kHalfTurn,           ///< orientations 180° apart: the least rotation is not unique
+  kZeroLength,         ///< a move that goes nowhere (warning: it is left out)
   kZoneShrunk,         ///< a zone larger than its legs allow (warning)
   kZoneIsStop,         ///< a corner where stopping is quicker, or a near reversal (warning)
   kPoseCorrected,      ///< a pose within rounding of a rotation was projected (warning)
