@@ -1,52 +1,13 @@
 #include "viapoint/trajectory/trajectory.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
-#include <sstream>
 #include <string>
 #include <utility>
 
+#include "trajectory/trajectory_piece_check.hpp"
+
 namespace viapoint {
-namespace {
-
-[[noreturn]] void refuse(size_t piece, const std::string& what) {
-  throw MotionError(ErrorCode::kBadArgument,
-                    "piece " + std::to_string(piece) + " of the trajectory " + what);
-}
-
-bool all_finite(const TrajectoryPiece& piece) {
-  for (const auto& row : piece.path) {
-    for (size_t i = 0; i < static_cast<size_t>(piece.joints); ++i) {
-      if (!std::isfinite(row[i])) return false;
-    }
-  }
-  return std::ranges::all_of(piece.timing, [](double c) { return std::isfinite(c); });
-}
-
-void check_piece(const TrajectoryPiece& piece, size_t index, int joints) {
-  if (piece.joints < 1 || piece.joints > kMaxJoints) {
-    refuse(index, "has " + std::to_string(piece.joints) + " joints; allowed are 1 to " +
-                      std::to_string(kMaxJoints));
-  }
-  if (piece.joints != joints) {
-    refuse(index, "has " + std::to_string(piece.joints) + " joints, where the first has " +
-                      std::to_string(joints));
-  }
-  if (!(piece.duration > 0.0) || !std::isfinite(piece.duration)) {
-    std::ostringstream text;
-    text << "lasts " << piece.duration << " s; it must be more than 0 and finite";
-    refuse(index, text.str());
-  }
-  if (!all_finite(piece)) refuse(index, "has a coefficient that is not a finite number");
-  if (piece.outputs < 0 || piece.outputs > kMaxOutputsAPiece) {
-    refuse(index, "changes " + std::to_string(piece.outputs) + " outputs; allowed are 0 to " +
-                      std::to_string(kMaxOutputsAPiece));
-  }
-}
-
-}  // namespace
-
 Trajectory::Trajectory(std::vector<TrajectoryPiece> pieces, const JointLimits& limits)
     : pieces_(std::move(pieces)) {
   if (pieces_.empty()) {
@@ -55,7 +16,10 @@ Trajectory::Trajectory(std::vector<TrajectoryPiece> pieces, const JointLimits& l
   const int joints = pieces_.front().joints;
   starts_.reserve(pieces_.size());
   for (size_t i = 0; i < pieces_.size(); ++i) {
-    check_piece(pieces_[i], i, joints);
+    if (const auto fault = find_fault(pieces_[i], joints)) {
+      throw MotionError(ErrorCode::kBadArgument,
+                        "piece " + std::to_string(i) + " of the trajectory " + *fault);
+    }
     starts_.push_back(duration_);
     duration_ += pieces_[i].duration;
   }

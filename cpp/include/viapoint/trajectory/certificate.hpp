@@ -13,17 +13,19 @@ namespace viapoint {
 
 /// The worst of one quantity of one joint over a whole motion.
 struct Extremum {
-  double value = 0.0;  ///< largest magnitude, an upper bound within 1e-9 of what is reached
+  double value = 0.0;  ///< largest magnitude: an upper bound, at most 1e-9 (of it, or of the limit
+                       ///< where that is more) above what is reached
   double share = 0.0;  ///< value over its limit
-  double time = 0.0;   ///< [s] where (midpoint of the tightest interval)
+  double time = 0.0;   ///< [s] where it is reached
   int move = 0;        ///< program step it happens in
 };
 
 /// Bounds over the whole of a motion, per joint where that makes sense.
 struct Certificate {
   std::vector<Extremum> velocity, acceleration, jerk;  ///< (n,)
-  JointVector position_min, position_max;              ///< reached extremes [rad or m], (n,)
-  double start_speed = 0.0, end_speed = 0.0;           ///< largest |q̇| at the ends
+  JointVector position_min,
+      position_max;  ///< bounds within 1e-9 of what is reached [rad or m], (n,)
+  double start_speed = 0.0, end_speed = 0.0;  ///< largest |q̇| at the ends
   double start_acceleration = 0.0, end_acceleration = 0.0;
   /// Largest step of q, q̇, q̈ between neighbouring pieces.
   double position_jump = 0.0, velocity_jump = 0.0, acceleration_jump = 0.0;
@@ -31,7 +33,9 @@ struct Certificate {
   double angle_deviation = 0.0;  ///< proven, outside zones [rad]; filled in by the planner
   double zone_deviation = 0.0;   ///< largest cut of a corner at the tool [m]; by the planner
   double manipulability = 0.0;   ///< smallest found along the motion; by the planner
-  /// Everything that is broken, worst first. Empty: the motion may run.
+  /// Everything that is broken, one entry a joint and quantity with its worst place: pieces that
+  /// are none, steps between pieces, ends not at rest, positions and coupled limits, rates; each
+  /// group worst first. Empty: the motion may run.
   std::vector<Problem> problems;
 
   [[nodiscard]] bool holds() const { return problems.empty(); }
@@ -42,8 +46,17 @@ inline constexpr double kLimitSlack = 1e-6;
 
 /// Bounds every joint's position, velocity, acceleration and jerk, the coupled limits, the ends and
 /// the joints between pieces. Composes each piece's polynomials into one in τ, in Bernstein form,
-/// and subdivides until bound and value agree (Lane & Riesenfeld 1981 for the bound).
-/// Real-time: not. Cost: linear in pieces.
+/// and subdivides until bound and value agree (Lane & Riesenfeld 1981 for the bound). The rounding
+/// of the composed coefficients, at most 64 ε k |c_k| |d(u^k)| summed over the powers k of the
+/// path, is added to the bounds.
+///
+/// A problem is: a share above 1 + kLimitSlack; a position or coupled limit left by more than 1e-9;
+/// a step between pieces of more than 1e-9 in position or 1e-6 of the limit in velocity or
+/// acceleration (kDiscontinuous); more than that share of velocity or acceleration at an end
+/// (kNotAtRest); a piece that is malformed, not finite, or whose u leaves [0, 1] by more than 1e-9
+/// (kBadArgument).
+/// @throws MotionError(kBadLimits) from limits.validate(); (kBadArgument) for no pieces at all
+/// Real-time: not. Cost: linear in pieces. Threads: any.
 [[nodiscard]] Certificate certify(std::span<const TrajectoryPiece> pieces,
                                   const JointLimits& limits);
 

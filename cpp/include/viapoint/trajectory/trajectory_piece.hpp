@@ -22,11 +22,12 @@ inline constexpr int kMaxOutputsAPiece = 8;
 /// quintic in x = τ/duration. Trivially copyable, so that it can go through a lock-free queue.
 struct TrajectoryPiece {
   double duration = 0.0;  ///< [s] of nominal time τ, > 0
-  std::array<std::array<double, kMaxJoints>, 6> path{};  ///< path[k][i]: coefficient of u^k, joint i
-  std::array<double, 6> timing{};                        ///< coefficient of x^k; u(0), u(1) in [0, 1]
+  std::array<std::array<double, kMaxJoints>, 6>
+      path{};                      ///< path[k][i]: coefficient of u^k, joint i
+  std::array<double, 6> timing{};  ///< coefficient of x^k; u(0), u(1) in [0, 1]
   std::int32_t joints = 0;
-  std::int32_t move = 0;        ///< program step
-  std::int32_t outputs = 0;     ///< how many of `output` count
+  std::int32_t move = 0;     ///< program step
+  std::int32_t outputs = 0;  ///< how many of `output` count
   std::array<OutputChange, kMaxOutputsAPiece> output{};
 
   /// q and its derivatives by nominal time τ. Real-time: safe, O(n). Threads: any.

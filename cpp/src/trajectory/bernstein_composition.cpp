@@ -1,0 +1,203 @@
+#include "viapoint/trajectory/bernstein_composition.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+namespace viapoint {
+namespace {
+
+constexpr int kCapacity = kMaxBernsteinDegree + 1;
+
+constexpr auto kBinomials = [] {
+  std::array<std::array<double, kCapacity>, kCapacity> table{};
+  for (std::size_t n = 0; n < kCapacity; ++n) {
+    table[n][0] = 1.0;
+    for (std::size_t k = 1; k <= n; ++k) {
+      table[n][k] = table[n - 1][k - 1] + (k < n ? table[n - 1][k] : 0.0);
+    }
+  }
+  return table;
+}();
+
+double binomial(int n, int k) {
+  return kBinomials[static_cast<std::size_t>(n)][static_cast<std::size_t>(k)];
+}
+
+/// Bernstein coefficients times C(n, i): products are then plain convolutions. Degree -1 is zero.
+struct Scaled {
+  int degree = -1;
+  std::array<double, kCapacity> c{};
+};
+
+Scaled one(int degree) {
+  Scaled result;
+  result.degree = degree;
+  if (degree >= 0) result.c = kBinomials[static_cast<std::size_t>(degree)];
+  return result;
+}
+
+/// sum += factor f g. @pre sum.degree == f.degree + g.degree unless one of them is zero
+void add_product(Scaled& sum, double factor, const Scaled& f, const Scaled& g) {
+  if (f.degree < 0 || g.degree < 0) return;
+  const auto nf = static_cast<std::size_t>(f.degree) + 1;
+  const auto ng = static_cast<std::size_t>(g.degree) + 1;
+  for (std::size_t i = 0; i < nf; ++i) {
+    const double scaled = factor * f.c[i];
+    for (std::size_t j = 0; j < ng; ++j) sum.c[i + j] += scaled * g.c[j];
+  }
+}
+
+Scaled product(const Scaled& f, const Scaled& g) {
+  Scaled result;
+  if (f.degree < 0 || g.degree < 0) return result;
+  result.degree = f.degree + g.degree;
+  add_product(result, 1.0, f, g);
+  return result;
+}
+
+/// A polynomial and its first three derivatives, each of its own natural degree.
+using Jet = std::array<Scaled, 4>;
+/// Upper bounds of the same.
+using Magnitude = std::array<double, 4>;
+
+/// Leibniz' rule. The smaller factor first is quicker.
+Jet leibniz(const Jet& f, const Jet& g) {
+  Jet result;
+  for (int d = 0; d < 4; ++d) {
+    Scaled& sum = result[static_cast<std::size_t>(d)];
+    sum.degree = std::max(-1, f[0].degree + g[0].degree - d);
+    for (int i = 0; i <= d; ++i) {
+      add_product(sum, binomial(d, i), f[static_cast<std::size_t>(i)],
+                  g[static_cast<std::size_t>(d - i)]);
+    }
+  }
+  return result;
+}
+
+Magnitude leibniz(const Magnitude& f, const Magnitude& g) {
+  return {f[0] * g[0], f[1] * g[0] + f[0] * g[1], f[2] * g[0] + 2 * f[1] * g[1] + f[0] * g[2],
+          f[3] * g[0] + 3 * (f[2] * g[1] + f[1] * g[2]) + f[0] * g[3]};
+}
+
+int degree_of(const std::array<double, 6>& monomials) {
+  for (int k = 5; k > 0; --k) {
+    if (monomials[static_cast<std::size_t>(k)] != 0.0) return k;
+  }
+  return 0;
+}
+
+int path_degree_of(const TrajectoryPiece& piece) {
+  const auto moves = [](double c) { return c != 0.0; };
+  for (int k = 5; k > 0; --k) {
+    const auto& row = piece.path[static_cast<std::size_t>(k)];
+    if (std::any_of(row.begin(), row.begin() + piece.joints, moves)) return k;
+  }
+  return 0;
+}
+
+/// Monomials a_j of the given degree: Σ a_j x^j (x + 1 - x)^(n-j), written out.
+Scaled from_monomials(const std::array<double, 6>& a, int degree) {
+  Scaled result;
+  result.degree = degree;
+  for (int i = 0; i <= degree; ++i) {
+    double& sum = result.c[static_cast<std::size_t>(i)];
+    for (int j = 0; j <= i; ++j) {
+      sum += binomial(degree - j, i - j) * a[static_cast<std::size_t>(j)];
+    }
+  }
+  return result;
+}
+
+double magnitude(const Scaled& f) {
+  double largest = 0.0;
+  for (int i = 0; i <= f.degree; ++i) {
+    largest = std::max(largest, std::abs(f.c[static_cast<std::size_t>(i)]) / binomial(f.degree, i));
+  }
+  return largest;
+}
+
+/// u by time: its polynomials, bounds of them, and the sums of its monomials' magnitudes, which
+/// say how much rounding they may hold.
+struct TimingJet {
+  Jet jet;
+  Magnitude size;
+  Magnitude monomials;
+};
+
+TimingJet timing_jet(const TrajectoryPiece& piece, int degree) {
+  TimingJet u;
+  std::array<double, 6> a = piece.timing;
+  for (int order = 0; order < 4; ++order) {
+    const auto d = static_cast<std::size_t>(order);
+    u.jet[d] = degree >= order ? from_monomials(a, degree - order) : Scaled{};
+    u.size[d] = magnitude(u.jet[d]);
+    u.monomials[d] = 0.0;
+    for (const double c : a) u.monomials[d] += std::abs(c);
+    for (std::size_t k = 1; k < 6; ++k) a[k - 1] = static_cast<double>(k) * a[k] / piece.duration;
+    a[5] = 0.0;
+  }
+  return u;
+}
+
+Bernstein unscaled(const Scaled& f) {
+  Bernstein result(std::max(f.degree, 0));
+  for (int i = 0; i <= f.degree; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    result.coefficients()[at] = f.c[at] / binomial(f.degree, i);
+  }
+  return result;
+}
+
+/// Rounding steps behind a coefficient of a power of u, for every power: its conversion (6 terms),
+/// products of up to 6 terms under 4 terms of Leibniz' rule, elevation (21), division, and the sum
+/// over the powers (6) and subdivision. Each errs by at most half an epsilon.
+constexpr double kRounding = 64.0 * std::numeric_limits<double>::epsilon();
+
+}  // namespace
+
+BernsteinComposition::BernsteinComposition(const TrajectoryPiece& piece)
+    : timing_degree_(degree_of(piece.timing)), path_degree_(path_degree_of(piece)) {
+  const TimingJet u = timing_jet(piece, timing_degree_);
+  // Even a piece that stands still has a timing, which is asked for.
+  path_degree_ = std::max(path_degree_, 1);
+  Jet power = u.jet;
+  Magnitude size_before = {1.0, 0.0, 0.0, 0.0};
+  for (int k = 1; k <= path_degree_; ++k) {
+    if (k > 1) {
+      power = leibniz(u.jet, power);
+      size_before = leibniz(u.size, size_before);
+    }
+    const Scaled raise = one(timing_degree_ * (path_degree_ - k));
+    // First order in the error of u: d(u^k) = k u^(k-1) du.
+    const Magnitude error = leibniz(u.monomials, size_before);
+    const auto column = static_cast<std::size_t>(k) - 1;
+    for (std::size_t d = 0; d < kOrders; ++d) {
+      powers_[d][column] = unscaled(raise.degree > 0 ? product(raise, power[d]) : power[d]);
+      rounding_[d][column] = kRounding * k * error[d];
+    }
+  }
+}
+
+Bernstein BernsteinComposition::of(const Path& path, int order) const {
+  const auto& powers = powers_[static_cast<std::size_t>(order)];
+  Bernstein sum(std::max(0, timing_degree_ * path_degree_ - order));
+  const auto b = sum.coefficients();
+  if (order == 0) std::ranges::fill(b, path[0]);
+  for (std::size_t k = 1; k <= static_cast<std::size_t>(path_degree_); ++k) {
+    if (path[k] == 0.0) continue;
+    const auto power = powers[k - 1].coefficients();
+    for (std::size_t i = 0; i < power.size(); ++i) b[i] += path[k] * power[i];
+  }
+  return sum;
+}
+
+double BernsteinComposition::rounding(const Path& path, int order) const {
+  const auto& rounding = rounding_[static_cast<std::size_t>(order)];
+  double sum = 0.0;
+  for (std::size_t k = 1; k <= kPowers; ++k) sum += std::abs(path[k]) * rounding[k - 1];
+  return sum;
+}
+
+}  // namespace viapoint
