@@ -2,8 +2,8 @@
 add_library(viapoint_compiler INTERFACE)
 target_compile_options(viapoint_compiler INTERFACE
   -Wall -Wextra -Wconversion -Wshadow -Werror
-  # g++ 12 warns falsely on string concatenation (GCC bug 105651).
-  $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
+  # g++ 12 warns falsely on string concatenation (GCC bug 105651) and on moved variants (80635).
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict -Wno-maybe-uninitialized>
   # Planner and controller must agree to the last bit: no fused multiply-add of the compiler's choosing.
   -ffp-contract=off)
 if(VIAPOINT_SANITIZE)
