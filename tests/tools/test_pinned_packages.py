@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+
 from pinned_packages import pinned_packages
 
 ROOT = Path(__file__).parents[2]
