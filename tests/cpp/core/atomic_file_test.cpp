@@ -1,0 +1,92 @@
+#include "viapoint/core/atomic_file.hpp"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <string>
+#include <thread>
+
+#include "viapoint/core/error.hpp"
+
+namespace viapoint {
+namespace {
+
+class AtomicFile : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string pattern = (std::filesystem::temp_directory_path() / "viapoint-XXXXXX").string();
+    folder_ = ::mkdtemp(pattern.data());
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::filesystem::path folder_;
+};
+
+TEST_F(AtomicFile, IsReadBackAndReplaced) {
+  const std::string path = folder_ / "points.json";
+  write_file_atomically(path, "old");
+  write_file_atomically(path, "new");
+  EXPECT_EQ(read_file(path), "new");
+  // Nothing is left beside it.
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1);
+}
+
+TEST_F(AtomicFile, KeepsTheRightsOfTheFileItReplaces) {
+  const std::string path = folder_ / "points.json";
+  write_file_atomically(path, "old");
+  std::filesystem::permissions(
+      path, std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
+  write_file_atomically(path, "new");
+  struct stat status{};
+  ASSERT_EQ(::stat(path.c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 0777U, 0600U);
+}
+
+TEST_F(AtomicFile, RefusesByNameWhereItCannotWriteOrRead) {
+  const auto expect_named = [](const auto& action, const std::string& path) {
+    try {
+      action();
+      FAIL() << path;
+    } catch (const MotionError& error) {
+      EXPECT_EQ(error.code(), ErrorCode::kFile);
+      EXPECT_NE(std::string(error.what()).find(path), std::string::npos) << error.what();
+    }
+  };
+  const std::string nowhere = folder_ / "no" / "such" / "folder.json";
+  expect_named([&] { write_file_atomically(nowhere, "x"); }, nowhere);
+  expect_named([&] { (void)read_file(nowhere); }, nowhere);
+  expect_named([&] { (void)read_file(folder_); }, folder_);
+}
+
+TEST_F(AtomicFile, SurvivesKillAtAnyMoment) {
+  // A child writes two contents in turn as fast as it can and is killed at varying moments; what
+  // is found must be one of them, whole.
+  const std::string path = folder_ / "points.json";
+  const std::string a(200'000, 'a');
+  const std::string b(300'000, 'b');
+  write_file_atomically(path, a);
+  for (int trial = 0; trial < 20; ++trial) {
+    SCOPED_TRACE(trial);
+    const pid_t child = ::fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+      for (;;) {
+        write_file_atomically(path, b);
+        write_file_atomically(path, a);
+      }
+    }
+    std::this_thread::sleep_for(std::chrono::microseconds(500 + 777 * trial));
+    ::kill(child, SIGKILL);
+    ::waitpid(child, nullptr, 0);
+    const std::string found = read_file(path);
+    ASSERT_TRUE(found == a || found == b) << found.size();
+  }
+}
+
+}  // namespace
+}  // namespace viapoint

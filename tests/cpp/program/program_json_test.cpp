@@ -1,0 +1,161 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <random>
+#include <string>
+
+#include "viapoint/core/atomic_file.hpp"
+#include "viapoint/program/motion_program.hpp"
+
+namespace viapoint {
+namespace {
+
+JointVector random_joints(std::mt19937& random, int joints) {
+  std::uniform_real_distribution<double> uniform(-3.0, 3.0);
+  JointVector q(joints);
+  for (double& value : q) value = uniform(random);
+  return q;
+}
+
+Target random_target(std::mt19937& random, int joints) {
+  std::normal_distribution<double> normal;
+  const Eigen::Vector3d p(normal(random), normal(random), normal(random));
+  switch (random() % 3) {
+    case 0:
+      return JointTarget{random_joints(random, joints)};
+    case 1: {
+      PoseTarget target{Pose::Identity()};
+      target.pose_base_tool.linear() =
+          Eigen::Quaterniond(normal(random), p.x(), p.y(), p.z()).normalized().toRotationMatrix();
+      target.pose_base_tool.translation() = p;
+      if (random() % 2 == 0) target.correction = 0.004 * std::abs(normal(random));
+      return target;
+    }
+    default:
+      return PositionTarget{p};
+  }
+}
+
+MotionProgram random_program(std::mt19937& random) {
+  MotionProgram program;
+  const int joints = 1 + static_cast<int>(random() % 7);
+  program.robot = "arm \"quoted\"";
+  program.robot_fingerprint = "00ff";
+  program.start = random_joints(random, joints);
+  const size_t steps = 1 + random() % 8;
+  for (size_t i = 0; i < steps; ++i) {
+    Step step;
+    switch (random() % 5) {
+      case 0:
+        step.what = PtpMove{random_target(random, joints)};
+        break;
+      case 1:
+        step.what = LinMove{random_target(random, joints), static_cast<Orientation>(random() % 3)};
+        break;
+      case 2:
+        step.what = Wait{0.1 * static_cast<double>(random() % 10)};
+        break;
+      case 3:
+        step.what = SetOutput{static_cast<int>(random() % 64), random() % 2 == 0};
+        break;
+      default:
+        step.what = TimedMove{
+            {{random_target(random, joints), 0.0}, {random_target(random, joints), 0.1 / 3.0}},
+            1.0 / 7.0,
+            static_cast<TimedSpace>(random() % 2)};
+    }
+    if (random() % 2 == 0) step.options.speed = 0.1 / 3.0;
+    if (random() % 2 == 0) step.options.acceleration = 1.0 / 7.0;
+    if (random() % 2 == 0) step.options.scale = 1.0 / 3.0;
+    step.options.zone = {static_cast<ZoneKind>(random() % 4), 0.0};
+    if (step.options.zone.kind != ZoneKind::kFine) step.options.zone.size = 0.1 / 7.0;
+    if (random() % 2 == 0) step.source = {"cell/α.py", 1 + static_cast<int>(random() % 99)};
+    program.steps.push_back(step);
+  }
+  return program;
+}
+
+std::string message_of(const std::string& text) {
+  try {
+    (void)program_from_json(text, "cell.json");
+  } catch (const MotionError& error) {
+    EXPECT_EQ(error.code(), ErrorCode::kBadProgram);
+    EXPECT_EQ(error.problem().file, "cell.json");
+    return error.problem().message;
+  }
+  ADD_FAILURE() << "accepted: " << text;
+  return "";
+}
+
+TEST(ProgramJson, ReadsBackToTheLastBit) {
+  for (unsigned seed = 0; seed < 2000; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937 random(seed);
+    const MotionProgram program = random_program(random);
+    const std::string text = to_json(program);
+    const MotionProgram back = program_from_json(text, "test");
+    // Text holds every number in its shortest exact form, so equal text means equal programs.
+    ASSERT_EQ(to_json(back), text);
+    ASSERT_EQ(back.start, program.start);
+    ASSERT_EQ(back.steps.size(), program.steps.size());
+    for (size_t i = 0; i < program.steps.size(); ++i) {
+      ASSERT_EQ(back.steps[i].what.index(), program.steps[i].what.index());
+      ASSERT_EQ(back.steps[i].options.speed, program.steps[i].options.speed);
+      ASSERT_EQ(back.steps[i].options.zone, program.steps[i].options.zone);
+      ASSERT_EQ(back.steps[i].source.line, program.steps[i].source.line);
+    }
+  }
+}
+
+TEST(ProgramJson, RefusesEveryTruncation) {
+  std::mt19937 random(3);
+  const std::string text = to_json(random_program(random));
+  // The last character is the newline behind the closing brace.
+  for (size_t length = 0; length + 2 < text.size(); ++length) {
+    EXPECT_THROW((void)program_from_json(text.substr(0, length), "cut"), MotionError) << length;
+  }
+}
+
+constexpr const char* kHead =
+    R"({"viapoint_program": 1, "robot": {"name": "a", "fingerprint": ""}, "start": [0, 0], "steps": [)";
+
+TEST(ProgramJson, NamesThePlaceAndWhatWasExpected) {
+  EXPECT_NE(message_of(std::string(kHead) + R"({"ptp": {"joints": [0, "x"]}}]})")
+                .find("steps[0].ptp.joints[1]: expected a number, got \"x\""),
+            std::string::npos);
+  EXPECT_NE(message_of(std::string(kHead) + R"({"ptp": {"joints": [0]}, "sped": 1}]})")
+                .find("no member \"sped\""),
+            std::string::npos);
+  EXPECT_NE(message_of(std::string(kHead) + R"({"fly": 1}]})").find("no member \"fly\""),
+            std::string::npos);
+  EXPECT_NE(
+      message_of(std::string(kHead) + R"({"lin": {"pose": [[1,0,0,0]]}, "orientation": "least"}]})")
+          .find("four rows"),
+      std::string::npos);
+  EXPECT_NE(message_of(std::string(kHead) +
+                       R"({"lin": {"position": [1,0,0]}, "orientation": "sideways"}]})")
+                .find("one of least, wrist, fixed"),
+            std::string::npos);
+  EXPECT_NE(message_of(std::string(kHead) + R"({"ptp": {"joints": [0]}, "scale": 0}]})")
+                .find("above zero"),
+            std::string::npos);
+  EXPECT_NE(message_of(R"({"viapoint_program": 2, "robot": {}, "start": [], "steps": []})")
+                .find("format 1"),
+            std::string::npos);
+  EXPECT_NE(message_of("[]").find("expected an object"), std::string::npos);
+}
+
+TEST(ProgramJson, RefusesAPoseThatIsNoRotation) {
+  const std::string message = message_of(
+      std::string(kHead) +
+      R"({"ptp": {"pose": [[0.41,0.29,0.87,0.6],[0.69,0.71,-0.09,0.15],[-0.6,0.64,0.49,-0.3],[0,0,0,1]]}}]})");
+  EXPECT_NE(message.find("columns 2 and 3"), std::string::npos) << message;
+}
+
+TEST(ProgramJson, ReportsAMissingFile) {
+  EXPECT_THROW((void)load_program("/nonexistent/program.json"), MotionError);
+}
+
+}  // namespace
+}  // namespace viapoint
