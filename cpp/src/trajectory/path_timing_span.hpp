@@ -1,0 +1,72 @@
+/// @file
+/// Timing of a stretch of one path piece, and the proof that it keeps the limits.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "viapoint/core/joint_limits.hpp"
+#include "viapoint/path/joint_path.hpp"
+#include "viapoint/trajectory/trajectory_piece.hpp"
+
+namespace viapoint::path_timing {
+
+/// The path parameter and its time derivatives at one instant: s, ṡ, s̈.
+struct RateState {
+  double s = 0.0, rate = 0.0, change = 0.0;
+};
+
+/// u(x), a quintic in x = t / duration, on one path piece.
+struct TimedSpan {
+  size_t piece = 0;
+  double duration = 0.0;      ///< [s]
+  std::array<double, 6> u{};  ///< coefficient of x^k
+
+  /// From one state to another (s counted from the start of the path piece), C² in time: quintic
+  /// Hermite interpolation.
+  [[nodiscard]] static TimedSpan between(size_t piece, double length, const RateState& from,
+                                         const RateState& to, double duration);
+  /// Constant jerk from `from`.
+  [[nodiscard]] static TimedSpan constant_jerk(size_t piece, double length, const RateState& from,
+                                               double jerk, double duration);
+};
+
+/// Largest shares of the limits, as bounds.
+struct Shares {
+  double velocity = 0.0, acceleration = 0.0, jerk = 0.0;
+
+  void include(const Shares& other);
+  /// The factor on time that makes the largest share one.
+  [[nodiscard]] double stretch() const;
+};
+
+/// What a bound on a span rests on: never below what is reached, never above what is proven.
+struct ShareBounds {
+  Shares reached;  ///< found at a sample
+  Shares proven;   ///< nowhere exceeded
+};
+
+/// Bounds of one span. Between two instants Δt apart, |f| <= max(|f0|, |f1|) + Δt²/8 · sup|f''|,
+/// the error of linear interpolation; sup|f''| comes from the Taylor forms of q(u) and u(t) about
+/// the middle of the span and the chain rule (Faà di Bruno), without sampling.
+/// @param cells number of parts that the span is cut into
+[[nodiscard]] ShareBounds bound_shares(const JointPiece& piece, const JointLimits& limits,
+                                       const TimedSpan& span, int cells);
+
+/// Bounds of all spans, as tight as `slack` (relative to the worst that is reached anywhere).
+[[nodiscard]] Shares prove(const JointPath& path, const JointLimits& limits,
+                           const std::vector<TimedSpan>& spans, double slack);
+
+/// True if u stays in [0, 1] and never goes back, to rounding.
+[[nodiscard]] bool goes_forward(const TimedSpan& span);
+
+/// Stretches (or shrinks) time so that the worst proven share is one, and no more than one.
+void fit_time(const JointPath& path, const JointLimits& limits, std::vector<TimedSpan>& spans,
+              double slack);
+
+[[nodiscard]] double total_duration(const std::vector<TimedSpan>& spans);
+
+[[nodiscard]] std::vector<TrajectoryPiece> to_pieces(const JointPath& path,
+                                                     const std::vector<TimedSpan>& spans);
+
+}  // namespace viapoint::path_timing
