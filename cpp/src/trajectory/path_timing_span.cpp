@@ -156,12 +156,17 @@ TimedSpan TimedSpan::between(size_t piece, double length, const RateState& from,
 }
 
 TimedSpan TimedSpan::constant_jerk(size_t piece, double length, const RateState& from, double jerk,
-                                   double duration) {
+                                   double end, double duration) {
   const double scale = duration / length;
-  return {piece,
-          duration,
-          {from.s / length, from.rate * scale, 0.5 * from.change * duration * scale,
-           jerk * duration * duration * scale / 6.0, 0.0, 0.0}};
+  TimedSpan span{piece,
+                 duration,
+                 {from.s / length, from.rate * scale, 0.5 * from.change * duration * scale,
+                  jerk * duration * duration * scale / 6.0, 0.0, 0.0}};
+  // Rounding of earlier spans goes into the speed, unless the span is too short to bear it.
+  constexpr double kRounding = 1e-10;
+  const double exact = (end - from.s) / length - span.u[2] - span.u[3];
+  if (std::abs(exact - span.u[1]) <= kRounding * std::abs(span.u[1])) span.u[1] = exact;
+  return span;
 }
 
 void Shares::include(const Shares& other) {

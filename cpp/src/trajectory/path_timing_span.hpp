@@ -26,9 +26,9 @@ struct TimedSpan {
   /// Hermite interpolation.
   [[nodiscard]] static TimedSpan between(size_t piece, double length, const RateState& from,
                                          const RateState& to, double duration);
-  /// Constant jerk from `from`.
+  /// Constant jerk from `from`; `end` is the s that is reached, so that rounding leaves no gap.
   [[nodiscard]] static TimedSpan constant_jerk(size_t piece, double length, const RateState& from,
-                                               double jerk, double duration);
+                                               double jerk, double end, double duration);
 };
 
 /// Largest shares of the limits, as bounds.

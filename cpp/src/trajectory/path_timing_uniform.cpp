@@ -134,11 +134,13 @@ std::vector<TimedSpan> seven_phases(const JointPath& path, const UniformCeilings
       const bool crosses = piece < last && advanced(state, jerk, left).s >= length;
       double step = crosses ? time_to_reach(state, jerk, length - state.s, left) : left;
       if (left - step <= sliver) step = left;
+      RateState end = advanced(state, jerk, step);
+      if (crosses || (piece == last && k + 1 == profile.phases)) end.s = length;
       if (step > sliver) {
-        spans.push_back(TimedSpan::constant_jerk(piece, length, state, jerk, step));
+        spans.push_back(TimedSpan::constant_jerk(piece, length, state, jerk, end.s, step));
       }
       left -= step;
-      state = advanced(state, jerk, step);
+      state = end;
       if (crosses) {
         state.s = 0.0;
         ++piece;
