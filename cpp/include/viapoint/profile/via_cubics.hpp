@@ -1,0 +1,32 @@
+/// @file
+/// Cubics through via points, which are all reached: velocities there are given, taken from the
+/// slopes, or chosen so that acceleration is continuous.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "viapoint/profile/axis_law.hpp"
+
+namespace viapoint {
+
+/// One cubic a segment through points[i] with velocities[i], from time 0.
+/// @param points (k,), k >= 2; @param durations (k − 1,) [s]; @param velocities (k,)
+/// @throws MotionError(kBadArgument) for sizes that do not fit or durations that are not positive
+[[nodiscard]] AxisLaw via_cubics(std::span<const double> points, std::span<const double> durations,
+                                 std::span<const double> velocities);
+
+/// Via velocities by the slope heuristic: 0 where the slope changes sign (or is zero on one side),
+/// else the mean of the two slopes (Craig 2005, §7.3). First and last are given. Returns (k,).
+[[nodiscard]] std::vector<double> slope_velocities(std::span<const double> points,
+                                                   std::span<const double> durations,
+                                                   double first = 0.0, double last = 0.0);
+
+/// Via velocities that make acceleration continuous: the cubic spline with given end velocities
+/// (de Boor 1978, ch. IV; tridiagonal, diagonally dominant). Returns (k,). For three points these
+/// are the two cubics of the textbooks.
+[[nodiscard]] std::vector<double> spline_velocities(std::span<const double> points,
+                                                    std::span<const double> durations,
+                                                    double first = 0.0, double last = 0.0);
+
+}  // namespace viapoint

@@ -1,0 +1,102 @@
+#include "viapoint/profile/polynomial.hpp"
+
+#include <cassert>
+
+#include "profile/argument_check.hpp"
+#include "profile/polynomial_roots.hpp"
+
+namespace viapoint {
+namespace {
+
+void require_interval(double t0, double t1) {
+  require_finite(t0, "t0");
+  require_finite(t1, "t1");
+  if (t0 < t1) return;
+  refuse("the interval ends at " + written(t1) + " s, before it has begun at " + written(t0) +
+             " s; it must last longer than 0 s",
+         t1 - t0, 0.0);
+}
+
+double of_order(const AxisState& state, int derivative) {
+  switch (derivative) {
+    case 0:
+      return state.q;
+    case 1:
+      return state.qd;
+    case 2:
+      return state.qdd;
+    default:
+      return state.qddd;
+  }
+}
+
+}  // namespace
+
+AxisState Polynomial::at(double t) const {
+  const double x = t - t0;
+  AxisState state;
+  state.q = c[0] + x * (c[1] + x * (c[2] + x * (c[3] + x * (c[4] + x * c[5]))));
+  state.qd = c[1] + x * (2.0 * c[2] + x * (3.0 * c[3] + x * (4.0 * c[4] + x * 5.0 * c[5])));
+  state.qdd = 2.0 * c[2] + x * (6.0 * c[3] + x * (12.0 * c[4] + x * 20.0 * c[5]));
+  state.qddd = 6.0 * c[3] + x * (24.0 * c[4] + x * 60.0 * c[5]);
+  return state;
+}
+
+Extremes Polynomial::extremes(int derivative) const {
+  assert(derivative >= 0 && derivative <= 3);
+  // The next derivative as a polynomial of x = (t − t0)/(t1 − t0), up to a positive factor.
+  const double length = t1 - t0;
+  std::array<double, 6> slope{};
+  double power = 1.0;
+  for (int k = derivative + 1; k <= 5; ++k) {
+    double factor = 1.0;
+    for (int m = 0; m <= derivative; ++m) factor *= k - m;
+    slope[static_cast<size_t>(k - derivative - 1)] = factor * c[static_cast<size_t>(k)] * power;
+    power *= length;
+  }
+  const auto value = [&](double t) { return of_order(at(t), derivative); };
+  Extremes found{value(t0), t0, value(t0), t0};
+  const auto look = [&](double t) {
+    const double q = value(t);
+    if (q < found.low) found.low = q, found.low_time = t;
+    if (q > found.high) found.high = q, found.high_time = t;
+  };
+  const Roots roots = roots_in_unit(slope, 4 - derivative);
+  for (int i = 0; i < roots.count; ++i) look(t0 + length * roots.x[static_cast<size_t>(i)]);
+  look(t1);
+  return found;
+}
+
+Polynomial cubic(const AxisState& from, const AxisState& to, double t0, double t1) {
+  require_finite(std::array{from.q, from.qd, to.q, to.qd}, "boundary value");
+  require_interval(t0, t1);
+  const double time = t1 - t0;
+  const double gap = to.q - from.q;
+  Polynomial law{t0, t1, {}};
+  law.c[0] = from.q;
+  law.c[1] = from.qd;
+  law.c[2] = (3.0 * gap / time - 2.0 * from.qd - to.qd) / time;
+  law.c[3] = (from.qd + to.qd - 2.0 * gap / time) / (time * time);
+  return law;
+}
+
+Polynomial quintic(const AxisState& from, const AxisState& to, double t0, double t1) {
+  require_finite(std::array{from.q, from.qd, from.qdd, to.q, to.qd, to.qdd}, "boundary value");
+  require_interval(t0, t1);
+  const double time = t1 - t0;
+  // What the start state alone would miss at the end, each by unit time.
+  const double gap = to.q - from.q - time * (from.qd + 0.5 * time * from.qdd);
+  const double slope = time * (to.qd - from.qd - time * from.qdd);
+  const double bend = time * time * (to.qdd - from.qdd);
+  const double cube = time * time * time;
+  Polynomial law{t0, t1, {}};
+  law.c[0] = from.q;
+  law.c[1] = from.qd;
+  law.c[2] = 0.5 * from.qdd;
+  law.c[3] = (10.0 * gap - 4.0 * slope + 0.5 * bend) / cube;
+  law.c[4] = (-15.0 * gap + 7.0 * slope - bend) / (cube * time);
+  law.c[5] = (6.0 * gap - 3.0 * slope + 0.5 * bend) / (cube * time * time);
+  return law;
+}
+
+}  // namespace viapoint
