@@ -12,16 +12,16 @@ namespace viapoint {
 
 /// A corner that keeps its zone.
 struct Corner {
-  bool possible = false;      ///< false: near reversal or no room; stop at the point
-  std::string reason;         ///< why not possible, or why smaller than asked; empty otherwise
-  double cut_before = 0.0;    ///< s taken off the end of the leg before
-  double cut_after = 0.0;     ///< s taken off the start of the leg after (its own, unscaled s)
-  double scale_after = 1.0;   ///< multiply every length (of s) of the leg after by this, so that q'
-                              ///< is continuous along the section
-  JointPiece blend;           ///< kind kBlend; from leg_before.length() - cut_before
-  double used = 0.0;          ///< size used, in the zone's own unit, proven
-  double tool_deviation = 0.0;///< proven largest distance, both ways, from the legs at the tool [m];
-                              ///< 0 for an arm without kinematics
+  bool possible = false;     ///< false: near reversal or no room; stop at the point
+  std::string reason;        ///< why not possible, or why smaller than asked; empty otherwise
+  double cut_before = 0.0;   ///< s taken off the end of the leg before
+  double cut_after = 0.0;    ///< s taken off the start of the leg after (its own, unscaled s)
+  double scale_after = 1.0;  ///< multiply every length (of s) of the leg after by this, so that q'
+                             ///< is continuous along the section
+  JointPiece blend;          ///< kind kBlend; from leg_before.length() - cut_before
+  double used = 0.0;         ///< size used, in the zone's own unit, proven
+  double tool_deviation = 0.0;  ///< proven largest distance, both ways, from the legs at the tool
+                                ///< [m]; 0 for an arm without kinematics
 };
 
 /// The largest corner within the zone and the room left.

@@ -34,26 +34,61 @@ struct Insertion {
   double angle_deviation = 0.0;     ///< proven [rad]
 };
 
-/// Follows the curve continuously from `start` (which must be on it).
+/// Follows the curve continuously from `start` (which must be on it): knots by Newton's method from
+/// extrapolated joints, q' and q'' exact at each from J q' = x' and J q'' = x'' − J' q', quintics
+/// between, as long as the tolerances allow. A piece counts only when its deviation is proven over
+/// all of it, so the joints cannot change branch between knots.
+/// Real-time: not. Threads: any.
 /// The joint position limits and coupled limits hold over the whole of every piece (proven on its
 /// polynomial).
 /// @throws MotionError with `share` of the curve and, where it applies, joint, value, limit:
 ///   kJointLimit, kCouplingLimit (first place where a limit is left), kSingular (the joints cannot
 ///   follow: rate beyond all bounds), kUnreachable (the curve leaves the workspace), kUncontrolled
-///   (the arm has too few joints to hold the coordinates; names them)
+///   (the arm has too few joints to hold the coordinates; names them), kZeroLength, kDiscontinuous
+///   (start is not on the curve), kBadArgument
+/// For a limit, `value` is the farthest that the joint would go along the rest of the curve.
 [[nodiscard]] Insertion insert_curve(const ForwardKinematics& arm, const JointLimits& limits,
                                      const TaskCurve& curve, const JointVector& start,
                                      const InsertionOptions& options);
 
+/// Largest distances of the tool from a curve.
+struct Deviation {
+  double position = 0.0;  ///< [m]
+  double angle = 0.0;     ///< [rad]
+};
+
 /// Upper bounds over the whole piece of the tool's distance from the curve between s0 and
 /// s0 + piece.length [m], and of the angle to its rotation [rad]. Proven: Taylor expansion about
-/// the middle of subintervals with a bounded remainder.
-struct Deviation {
-  double position = 0.0;
-  double angle = 0.0;
-};
+/// the middle of subintervals with a bounded remainder: with e(s) = fk(q(s)) − p(s) and the
+/// subinterval |s − m| <= δ,
+///   ‖e(s)‖ <= max_{|t|<=δ} ‖e(m) + e'(m) t + e''(m) t²/2‖ + δ³/6 (sup‖fk'''‖ + sup‖p'''‖),
+/// where e, e' and e'' are exact (J and J' on q' and q'') and the suprema come from those of |q'|,
+/// |q''|, |q'''| and the reach of the chain alone; likewise for the angle. Subintervals are halved
+/// until the bound is within the resolution of a deviation that is reached.
+/// @param s0 where on the curve the piece starts
+/// @param resolution_m, resolution_rad > 0: how much above the true maximum the bounds may lie
+/// Real-time: not. Threads: any.
 [[nodiscard]] Deviation bound_deviation(const ForwardKinematics& arm, const JointPiece& piece,
                                         const TaskCurve& curve, double s0, double resolution_m,
                                         double resolution_rad);
+
+/// Knots between which the joints go straight (Taylor 1979), for study and comparison.
+struct TaylorKnots {
+  std::vector<double> s;           ///< where on the curve, first 0, last its length
+  std::vector<JointVector> knots;  ///< as many
+  Deviation at_midpoints;          ///< the largest found where the method looks: no bound
+};
+
+/// Bounded deviation joint paths (Taylor 1979): where the tool at the joint midpoint of two knots
+/// is farther than a tolerance from the curve's midpoint, a knot is put there; both halves again.
+/// That is a test, not a proof: bound_deviation of JointPiece::line between the knots tells the
+/// truth.
+/// @param start, goal joints at both ends of the curve, on one branch
+/// @throws MotionError kBranchChange (the bisection does not end: start and goal are on different
+///   branches), kSingular (no joints found at a midpoint), both with share; kZeroLength,
+///   kBadArgument
+[[nodiscard]] TaylorKnots taylor_insertion(const ForwardKinematics& arm, const TaskCurve& curve,
+                                           const JointVector& start, const JointVector& goal,
+                                           double position_tolerance, double angle_tolerance);
 
 }  // namespace viapoint

@@ -11,7 +11,8 @@
 namespace viapoint {
 
 /// Coefficients of n quintics: row k holds those of u^k, (6, n).
-using QuinticCoefficients = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, kMaxJoints>;
+using QuinticCoefficients =
+    Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, kMaxJoints>;
 
 /// q and its derivatives by the path parameter s, each (n,).
 struct PathPoint {
@@ -29,7 +30,7 @@ struct JointPiece {
   QuinticCoefficients coefficients;
   double length = 0.0;  ///< of the parameter s, > 0 (any unit; consistent along one section)
   PieceKind kind = PieceKind::kJointLine;
-  int move = 0;         ///< the program step that this piece serves (a blend: the step it leaves)
+  int move = 0;  ///< the program step that this piece serves (a blend: the step it leaves)
   /// Ceilings on ds/dt and |d²s/dt²| from tool speed and acceleration wishes; infinite without.
   double rate_limit = std::numeric_limits<double>::infinity();
   double rate_change_limit = std::numeric_limits<double>::infinity();

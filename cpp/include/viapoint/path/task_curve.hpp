@@ -23,19 +23,23 @@ struct CurveBounds {
   double w2 = 0.0;  ///< sup ‖w''‖
 };
 
+/// Immutable. Real-time: not. Threads: any, at once.
 class TaskCurve {
  public:
   virtual ~TaskCurve() = default;
+  /// Of the parameter s; 0 for a curve that goes nowhere, which insertion refuses.
   [[nodiscard]] virtual double length() const = 0;
   /// @pre 0 <= s <= length()
   [[nodiscard]] virtual CurvePoint at(double s) const = 0;
+  /// Bounds that hold for every s in [s0, s1].
   [[nodiscard]] virtual CurveBounds bounds(double s0, double s1) const = 0;
 };
 
 /// Straight line with a constant rotation rate about one axis (least rotation between the ends).
-/// s is the length travelled [m]; for a turn on the spot it is the angle [rad].
+/// s is the length travelled [m]; for a turn on the spot (travel under 1 nm) it is the angle [rad].
 class LineCurve final : public TaskCurve {
  public:
+  /// @pre both rotation blocks are rotations (checked_pose)
   LineCurve(const Pose& from, const Pose& to);
   /// Orientation stays that of `from`.
   [[nodiscard]] static LineCurve fixed_orientation(const Pose& from, const Eigen::Vector3d& to);

@@ -1,0 +1,178 @@
+#include "path/curve_follower.hpp"
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+
+namespace viapoint {
+namespace {
+
+constexpr int kNewtonSteps = 12;
+/// Knots take this part of the tolerances at most; the deviation proof counts what they take.
+constexpr double kKnotShare = 1e-3;
+/// Below this a further Newton step only moves rounding (coordinates scaled to the reach).
+constexpr double kConverged = 1e-14;
+/// A correction larger than this [rad or m] has left the branch that was extrapolated.
+constexpr double kLargestCorrection = 0.7;
+/// Singular directions below this share of the largest are left alone (least norm).
+constexpr double kRankThreshold = 1e-10;
+constexpr int kDampedSteps = 60;
+
+}  // namespace
+
+CurveFollower::CurveFollower(const ForwardKinematics& arm, const TaskCurve& curve,
+                             const JointVector& start, const InsertionOptions& options)
+    : arm_(arm),
+      curve_(curve),
+      start_(start),
+      options_(options),
+      coordinates_(options.hold == Hold::kPose ? 6 : 3),
+      free_joints_(options.hold == Hold::kWrist ? std::min(3, arm.joints()) : arm.joints()),
+      reach_(1.0),
+      wrist_rate_(JointVector::Zero(arm.joints())) {
+  const double reach = arm.reach_bound(start.cwiseAbs()).maxCoeff();
+  if (reach > 0.0) reach_ = reach;
+  for (int i = free_joints_; i < arm.joints(); ++i) {
+    wrist_rate_[i] = (options.wrist_goal[i] - start[i]) / curve.length();
+  }
+}
+
+Twist CurveFollower::miss(double s, const Pose& pose) const {
+  const CurvePoint wanted = curve_.at(s);
+  Twist miss = Twist::Zero();
+  miss.head<3>() = wanted.p - pose.translation();
+  if (coordinates_ == 6) {
+    miss.tail<3>() = rotation_log(wanted.rotation * pose.linear().transpose());
+  }
+  return miss;
+}
+
+CurveFollower::Rows CurveFollower::scaled(const Twist& twist) const {
+  Rows rows = twist.head(coordinates_);
+  rows.head<3>() /= reach_;
+  return rows;
+}
+
+CurveFollower::Block CurveFollower::scaled(const Jacobian& jacobian) const {
+  Block block = jacobian.topLeftCorner(coordinates_, free_joints_);
+  block.topRows<3>() /= reach_;
+  return block;
+}
+
+void CurveFollower::place_wrist(double s, JointVector& q) const {
+  for (int i = free_joints_; i < arm_.joints(); ++i) q[i] = start_[i] + wrist_rate_[i] * s;
+}
+
+std::optional<CurveFollower::Knot> CurveFollower::solve(double s, const JointVector& guess) const {
+  JointVector q = guess;
+  place_wrist(s, q);
+  const JointVector from = q;
+  ChainFrames frames = arm_.frames(q);
+  Twist error = miss(s, frames.pose_base_tool);
+  double size = scaled(error).norm();
+  for (int step = 0; step < kNewtonSteps && size > kConverged; ++step) {
+    Eigen::CompleteOrthogonalDecomposition<Block> solver;
+    solver.setThreshold(kRankThreshold);
+    solver.compute(scaled(arm_.jacobian(frames)));
+    JointVector trial = q;
+    trial.head(free_joints_) += solver.solve(scaled(error));
+    if (!trial.allFinite() || (trial - from).lpNorm<Eigen::Infinity>() > kLargestCorrection) {
+      return std::nullopt;
+    }
+    const ChainFrames trial_frames = arm_.frames(trial);
+    const Twist trial_error = miss(s, trial_frames.pose_base_tool);
+    const double trial_size = scaled(trial_error).norm();
+    // Near a solution a step that no longer gains is rounding; far from one it is divergence, and
+    // the test of the residual below tells.
+    if (step > 2 && trial_size >= size) break;
+    q = trial;
+    frames = trial_frames;
+    error = trial_error;
+    size = trial_size;
+  }
+  const Deviation residual = {error.head<3>().norm(), error.tail<3>().norm()};
+  if (!(residual.position <= kKnotShare * options_.position_tolerance)) return std::nullopt;
+  if (coordinates_ == 6 && !(residual.angle <= kKnotShare * options_.angle_tolerance)) {
+    return std::nullopt;
+  }
+  return derivatives(s, q);
+}
+
+CurveFollower::Knot CurveFollower::derivatives(double s, const JointVector& q) const {
+  const ChainFrames frames = arm_.frames(q);
+  const CurvePoint wanted = curve_.at(s);
+  const Jacobian jacobian = arm_.jacobian(frames);
+  const Block block = scaled(jacobian);
+  Eigen::CompleteOrthogonalDecomposition<Block> solver;
+  solver.setThreshold(kRankThreshold);
+  solver.compute(block);
+
+  Knot knot;
+  const Twist error = miss(s, frames.pose_base_tool);
+  knot.residual = {error.head<3>().norm(), error.tail<3>().norm()};
+  knot.point.q = q;
+  knot.point.q1 = wrist_rate_;
+  Twist rate;
+  rate << wanted.p1, wanted.w;
+  const Rows wanted_rate = scaled(rate);
+  const Rows by_free = scaled(Twist(rate - jacobian * wrist_rate_));
+  knot.point.q1.head(free_joints_) = solver.solve(by_free);
+  const double rate_size = wanted_rate.norm();
+  const Rows rate_miss = block * knot.point.q1.head(free_joints_) - by_free;
+  knot.rate_residual = rate_size > 0.0 ? rate_miss.norm() / rate_size : 0.0;
+
+  const Jacobian jacobian_rate = arm_.jacobian_rate(frames, knot.point.q1);
+  Twist rate_change;
+  rate_change << wanted.p2, wanted.w1;
+  rate_change -= jacobian_rate * knot.point.q1;
+  knot.point.q2 = JointVector::Zero(arm_.joints());
+  knot.point.q2.head(free_joints_) = solver.solve(scaled(rate_change));
+  if (free_joints_ > coordinates_) {
+    // The derivative of least norm lacks what turns the row space of J: (I − J⁺J) J'ᵀλ.
+    const BlockTransposed transposed = block.transpose();
+    Eigen::CompleteOrthogonalDecomposition<BlockTransposed> dual;
+    dual.setThreshold(kRankThreshold);
+    dual.compute(transposed);
+    const JointVector q1_free = knot.point.q1.head(free_joints_);
+    const Rows lambda = dual.solve(q1_free);
+    const JointVector turn = scaled(jacobian_rate).transpose() * lambda;
+    const Rows seen = block * turn;
+    knot.point.q2.head(free_joints_) += turn - solver.solve(seen);
+  }
+  knot.point.q3 = JointVector::Zero(arm_.joints());
+  return knot;
+}
+
+Twist CurveFollower::nearest_miss(double s, JointVector guess) const {
+  place_wrist(s, guess);
+  double damping = 1e-3;
+  ChainFrames frames = arm_.frames(guess);
+  Twist error = miss(s, frames.pose_base_tool);
+  for (int step = 0; step < kDampedSteps && scaled(error).norm() > 1e-12; ++step) {
+    const Block block = scaled(arm_.jacobian(frames));
+    JointMatrix normal = block.transpose() * block;
+    normal.diagonal().array() += damping;
+    const JointVector right = block.transpose() * scaled(error);
+    JointVector trial = guess;
+    trial.head(free_joints_) += normal.ldlt().solve(right);
+    const ChainFrames trial_frames = arm_.frames(trial);
+    const Twist trial_error = miss(s, trial_frames.pose_base_tool);
+    if (scaled(trial_error).norm() < scaled(error).norm()) {
+      guess = trial;
+      frames = trial_frames;
+      error = trial_error;
+      damping = std::max(0.1 * damping, 1e-14);
+    } else {
+      damping *= 10.0;
+      if (damping > 1e6) break;
+    }
+  }
+  return error;
+}
+
+Eigen::VectorXd CurveFollower::singular_values(const JointVector& q) const {
+  const Eigen::MatrixXd block = scaled(arm_.jacobian(arm_.frames(q)));
+  return Eigen::JacobiSVD<Eigen::MatrixXd>(block).singularValues();
+}
+
+}  // namespace viapoint

@@ -1,0 +1,68 @@
+/// @file
+/// Joints on a tool curve at one s: position by Newton from a guess, q' and q'' exactly.
+#pragma once
+
+#include <Eigen/QR>
+#include <optional>
+
+#include "viapoint/path/insertion.hpp"
+
+namespace viapoint {
+
+/// Solves, for the coordinates that are held (x = tool position, and rotation for Hold::kPose),
+///   J q' = x',   J q'' = x'' − J' q'.
+/// With more joints than coordinates the least-norm rate is followed, q' = Jᵀλ, and its own exact
+/// derivative, q'' = Jᵀλ' + J'ᵀλ, is taken. With fewer, the least-squares solution, whose residual
+/// is kept. Rotation rows count in radians, position rows in shares of the arm's reach.
+class CurveFollower {
+ public:
+  /// Joints on the curve, and how well.
+  struct Knot {
+    PathPoint point;
+    Deviation residual;          ///< of the position and angle at the knot
+    double rate_residual = 0.0;  ///< ‖J q' − x'‖ / ‖x'‖ of the held coordinates
+  };
+
+  CurveFollower(const ForwardKinematics& arm, const TaskCurve& curve, const JointVector& start,
+                const InsertionOptions& options);
+
+  [[nodiscard]] int coordinates() const { return coordinates_; }  ///< 3 or 6
+  [[nodiscard]] int free_joints() const { return free_joints_; }  ///< those that follow the curve
+
+  /// Newton's method from `guess`. Nothing when it does not come within a small part of the
+  /// tolerances, or goes far from the guess.
+  [[nodiscard]] std::optional<Knot> solve(double s, const JointVector& guess) const;
+  /// q' and q'' at joints that lie on the curve at s.
+  [[nodiscard]] Knot derivatives(double s, const JointVector& q) const;
+
+  /// Damped least squares (Levenberg 1944) from `guess`, however far: the nearest the joints come
+  /// to the curve at s. @return the misses of the held coordinates [m, then rad], (6,)
+  [[nodiscard]] Twist nearest_miss(double s, JointVector guess) const;
+  /// Singular values of the held rows, largest first.
+  [[nodiscard]] Eigen::VectorXd singular_values(const JointVector& q) const;
+
+ private:
+  /// Held rows and free columns, on the stack.
+  using Block =
+      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 6, kMaxJoints>;
+  using BlockTransposed =
+      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxJoints, 6>;
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 6, 1>;
+
+  [[nodiscard]] Twist miss(double s, const Pose& pose) const;
+  [[nodiscard]] Rows scaled(const Twist& twist) const;
+  [[nodiscard]] Block scaled(const Jacobian& jacobian) const;
+  /// The joints that do not follow the curve, put where they belong at s.
+  void place_wrist(double s, JointVector& q) const;
+
+  const ForwardKinematics& arm_;
+  const TaskCurve& curve_;
+  JointVector start_;
+  InsertionOptions options_;
+  int coordinates_;
+  int free_joints_;
+  double reach_;            ///< [m] that counts as much as a radian
+  JointVector wrist_rate_;  ///< q' of the joints that go straight; zero for the others
+};
+
+}  // namespace viapoint

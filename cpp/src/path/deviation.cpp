@@ -1,0 +1,188 @@
+#include "path/deviation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "path/chain_bounds.hpp"
+#include "viapoint/core/units.hpp"
+
+namespace viapoint {
+namespace {
+
+/// A stretch of a piece, halved this often at most: below 2⁻⁴⁰ only rounding is left to refine.
+constexpr int kDeepest = 40;
+
+struct Stretch {
+  double middle;
+  double half;
+  int depth;
+};
+
+/// What is known of a stretch: the deviation at its middle, and a bound over all of it.
+struct StretchDeviation {
+  Deviation at_middle;
+  Deviation bound;
+};
+
+/// sup ‖e + e'·t + e''·t²/2‖ for |t| <= half: a norm is convex, so the control points of the
+/// quadratic (Bernstein form) bound it.
+double quadratic_bound(const Eigen::Vector3d& e, const Eigen::Vector3d& e1,
+                       const Eigen::Vector3d& e2, double half) {
+  const Eigen::Vector3d bend = 0.5 * half * half * e2;
+  return std::max(
+      {(e - half * e1 + bend).norm(), (e - bend).norm(), (e + half * e1 + bend).norm()});
+}
+
+/// Bounds the angle of Q = R_curveᵀ R_tool. Its left rate is v = R_curveᵀ (w_tool − w_curve). The
+/// rotation vector φ of Q obeys φ' = J⁻¹(φ) v with the inverse left Jacobian of SO(3) (Bullo &
+/// Murray 1995), and ‖J⁻¹(φ) − I‖ <= ½‖φ‖ + 0.0848 ‖φ‖² <= 0.585 ‖φ‖ for ‖φ‖ <= 1. So φ is the
+/// quadratic φ(m) + v t + v' t²/2 up to sup‖v''‖ half³/6 + 0.585 sup‖φ‖ sup‖v‖ half.
+double angle_bound(const Eigen::Vector3d& phi, const CurvePoint& on_curve,
+                   const CurveBounds& curve_bounds, const Eigen::Vector3d& tool_w,
+                   const Eigen::Vector3d& tool_w1, double tool_w2, double half) {
+  // In the base frame first: u = w_tool − w_curve has the size of v, its derivatives do not turn.
+  const Eigen::Vector3d u = tool_w - on_curve.w;
+  const Eigen::Vector3d u1 = tool_w1 - on_curve.w1;
+  const double sup_u2 = tool_w2 + curve_bounds.w2;
+  const double sup_u1 = u1.norm() + half * sup_u2;
+  const double sup_u = u.norm() + half * (u1.norm() + 0.5 * half * sup_u2);
+  const double angle = phi.norm();
+  const double crude = std::min(angle + half * sup_u, kPi);
+  if (crude > 1.0) return crude;
+  // v' and v'' in the frame of the curve, which turns at w_curve.
+  const Eigen::Matrix3d to_curve = on_curve.rotation.transpose();
+  const Eigen::Vector3d v = to_curve * u;
+  const Eigen::Vector3d v1 = to_curve * (u1 - on_curve.w.cross(u));
+  const double sup_v2 = sup_u2 + 2.0 * curve_bounds.w * sup_u1 +
+                        (curve_bounds.w1 + curve_bounds.w * curve_bounds.w) * sup_u;
+  const double refined = quadratic_bound(phi, v, v1, half) + half * half * half * sup_v2 / 6.0 +
+                         0.585 * crude * sup_u * half;
+  return std::min(crude, refined);
+}
+
+/// Taylor expansion of the tool about the middle of stretches of one piece.
+class PieceDeviation {
+ public:
+  PieceDeviation(const ForwardKinematics& arm, const JointPiece& piece, const TaskCurve& curve,
+                 double s0, bool with_angle)
+      : arm_(arm),
+        piece_(piece),
+        curve_(curve),
+        s0_(s0),
+        reach_(reach_over(arm, piece)),
+        with_angle_(with_angle) {}
+
+  StretchDeviation over(const Stretch& stretch) const {
+    const double half = stretch.half;
+    const PathPoint joints = piece_.at(stretch.middle);
+    const CurvePoint on_curve = curve_.at(on_curve_s(stretch.middle));
+    const CurveBounds bounds =
+        curve_.bounds(on_curve_s(stretch.middle - half), on_curve_s(stretch.middle + half));
+    const JointSuprema sup = joint_suprema(piece_, joints, stretch.middle, half);
+    const ChainFrames frames = arm_.frames(joints.q);
+    const Jacobian jacobian = arm_.jacobian(frames);
+    const Jacobian jacobian_rate = arm_.jacobian_rate(frames, joints.q1);
+    const Twist rate = jacobian * joints.q1;
+    const Twist rate_change = jacobian * joints.q2 + jacobian_rate * joints.q1;
+
+    StretchDeviation result;
+    const Eigen::Vector3d e = frames.pose_base_tool.translation() - on_curve.p;
+    const Eigen::Vector3d e1 = rate.head<3>() - on_curve.p1;
+    const Eigen::Vector3d e2 = rate_change.head<3>() - on_curve.p2;
+    result.at_middle.position = e.norm();
+    result.bound.position =
+        quadratic_bound(e, e1, e2, half) +
+        half * half * half / 6.0 * (position_third_bound(arm_, reach_, sup) + bounds.p3);
+    if (with_angle_) {
+      const Eigen::Vector3d phi =
+          rotation_log(on_curve.rotation.transpose() * frames.pose_base_tool.linear());
+      result.at_middle.angle = phi.norm();
+      result.bound.angle = angle_bound(phi, on_curve, bounds, rate.tail<3>(), rate_change.tail<3>(),
+                                       rotation_second_bound(arm_, sup), half);
+    }
+    return result;
+  }
+
+ private:
+  double on_curve_s(double s) const { return std::clamp(s0_ + s, 0.0, curve_.length()); }
+
+  const ForwardKinematics& arm_;
+  const JointPiece& piece_;
+  const TaskCurve& curve_;
+  double s0_;
+  JointVector reach_;
+  bool with_angle_;
+};
+
+/// Both halves of a stretch, the earlier on top.
+void push_halves(std::vector<Stretch>& open, const Stretch& stretch) {
+  const double quarter = 0.5 * stretch.half;
+  open.push_back({stretch.middle + quarter, quarter, stretch.depth + 1});
+  open.push_back({stretch.middle - quarter, quarter, stretch.depth + 1});
+}
+
+}  // namespace
+
+Deviation bound_deviation(const ForwardKinematics& arm, const JointPiece& piece,
+                          const TaskCurve& curve, double s0, double resolution_m,
+                          double resolution_rad) {
+  const PieceDeviation local(arm, piece, curve, s0, true);
+  Deviation seen;    // reached for certain
+  Deviation proven;  // never left
+  std::vector<Stretch> open = {{0.5 * piece.length, 0.5 * piece.length, 0}};
+  while (!open.empty()) {
+    const Stretch stretch = open.back();
+    open.pop_back();
+    const StretchDeviation found = local.over(stretch);
+    seen.position = std::max(seen.position, found.at_middle.position);
+    seen.angle = std::max(seen.angle, found.at_middle.angle);
+    const bool tight = found.bound.position <= seen.position + resolution_m &&
+                       found.bound.angle <= seen.angle + resolution_rad;
+    if (tight || stretch.depth >= kDeepest) {
+      proven.position = std::max(proven.position, found.bound.position);
+      proven.angle = std::max(proven.angle, found.bound.angle);
+    } else {
+      push_halves(open, stretch);
+    }
+  }
+  return proven;
+}
+
+std::optional<Deviation> prove_deviation(const ForwardKinematics& arm, const JointPiece& piece,
+                                         const TaskCurve& curve, double s0,
+                                         const Deviation& tolerance) {
+  const PieceDeviation local(arm, piece, curve, s0, std::isfinite(tolerance.angle));
+  Deviation proven;
+  std::vector<Stretch> open = {{0.5 * piece.length, 0.5 * piece.length, 0}};
+  while (!open.empty()) {
+    const Stretch stretch = open.back();
+    open.pop_back();
+    const StretchDeviation found = local.over(stretch);
+    // Written so that NaN is no proof.
+    if (!(found.at_middle.position <= tolerance.position &&
+          found.at_middle.angle <= tolerance.angle)) {
+      return std::nullopt;
+    }
+    if (found.bound.position <= tolerance.position && found.bound.angle <= tolerance.angle) {
+      proven.position = std::max(proven.position, found.bound.position);
+      proven.angle = std::max(proven.angle, found.bound.angle);
+    } else if (stretch.depth >= kDeepest) {
+      return std::nullopt;
+    } else {
+      push_halves(open, stretch);
+    }
+  }
+  return proven;
+}
+
+Deviation deviation_at(const ForwardKinematics& arm, const JointPiece& piece,
+                       const TaskCurve& curve, double s0, double s) {
+  const Pose pose = arm.pose(piece.at(s).q);
+  const CurvePoint on_curve = curve.at(std::clamp(s0 + s, 0.0, curve.length()));
+  return {(pose.translation() - on_curve.p).norm(),
+          rotation_distance(on_curve.rotation, pose.linear())};
+}
+
+}  // namespace viapoint

@@ -1,0 +1,24 @@
+/// @file
+/// The deviation proof as insertion uses it: yes or no against a tolerance, without refining what
+/// is already proven.
+#pragma once
+
+#include <optional>
+
+#include "viapoint/path/insertion.hpp"
+
+namespace viapoint {
+
+/// Proves that the piece stays within `tolerance` of the curve from s0 on, and returns the bound
+/// found on the way (at most the tolerance); nothing when it leaves it, or when no proof is found.
+/// An infinite angle tolerance leaves the rotation aside.
+[[nodiscard]] std::optional<Deviation> prove_deviation(const ForwardKinematics& arm,
+                                                       const JointPiece& piece,
+                                                       const TaskCurve& curve, double s0,
+                                                       const Deviation& tolerance);
+
+/// The deviation at one s of the piece, not a bound.
+[[nodiscard]] Deviation deviation_at(const ForwardKinematics& arm, const JointPiece& piece,
+                                     const TaskCurve& curve, double s0, double s);
+
+}  // namespace viapoint

@@ -1,0 +1,185 @@
+#include "viapoint/path/insertion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "path/curve_follower.hpp"
+#include "path/deviation.hpp"
+#include "path/insertion_failure.hpp"
+
+namespace viapoint {
+namespace {
+
+/// Shortest step, as a share of the curve: shorter ones mean that the curve cannot be followed on.
+constexpr double kShortestStep = 1e-7;
+/// A knot whose rate misses the curve's by more than this share does not follow it.
+constexpr double kRateResidual = 1e-6;
+/// A quintic Hermite piece with exact ends errs like the sixth power of its length.
+constexpr double kErrorOrder = 6.0;
+constexpr size_t kMostPieces = 200000;
+
+void check_arguments(const ForwardKinematics& arm, const JointLimits& limits,
+                     const TaskCurve& curve, const JointVector& start,
+                     const InsertionOptions& options) {
+  if (start.size() != arm.joints() || limits.joints() != arm.joints()) {
+    throw MotionError(ErrorCode::kBadArgument, "the arm has " + std::to_string(arm.joints()) +
+                                                   " joints, the start " +
+                                                   std::to_string(start.size()) + ", the limits " +
+                                                   std::to_string(limits.joints()));
+  }
+  if (!start.allFinite()) {
+    throw MotionError(ErrorCode::kBadArgument, "the start joints are not finite");
+  }
+  if (options.hold == Hold::kWrist && options.wrist_goal.size() != arm.joints()) {
+    throw MotionError(ErrorCode::kBadArgument,
+                      "the wrist goal has " + std::to_string(options.wrist_goal.size()) +
+                          " joints, the arm " + std::to_string(arm.joints()));
+  }
+  if (!(options.position_tolerance > 0.0) || !(options.angle_tolerance > 0.0)) {
+    throw MotionError(ErrorCode::kBadArgument, "insertion tolerances must be above zero");
+  }
+  if (!(curve.length() > 0.0)) {
+    throw MotionError(ErrorCode::kZeroLength,
+                      "the move goes nowhere: its start and its goal are the same pose",
+                      {"remove the move, or wait() where a pause is meant"});
+  }
+}
+
+/// Walks along the curve and keeps what it has proven.
+class Marcher {
+ public:
+  Marcher(const ForwardKinematics& arm, const JointLimits& limits, const TaskCurve& curve,
+          const JointVector& start, const InsertionOptions& options)
+      : arm_(arm),
+        limits_(limits),
+        curve_(curve),
+        options_(options),
+        follower_(arm, curve, start, options),
+        tolerance_{options.position_tolerance, options.hold == Hold::kPose
+                                                   ? options.angle_tolerance
+                                                   : std::numeric_limits<double>::infinity()},
+        step_(curve.length()) {
+    here_ = follower_.derivatives(0.0, start);
+    result_.knots.push_back(start);
+  }
+
+  Insertion run() {
+    refuse_start_off_the_curve();
+    const double length = curve_.length();
+    while (s_ < length) {
+      // The rest in equal steps, so that no stub is left at the end.
+      const double steps = std::ceil((length - s_) / step_ * (1.0 - 1e-9));
+      const double next = steps <= 1.0 ? length : s_ + (length - s_) / steps;
+      if (next - s_ < kShortestStep * length && next < length) fail();
+      if (!advance(next)) continue;
+      if (result_.pieces.size() > kMostPieces) fail();
+    }
+    if (crossing_) throw_limit_crossing(arm_, *crossing_, crossing_share_, options_);
+    return std::move(result_);
+  }
+
+ private:
+  void refuse_start_off_the_curve() const {
+    if (here_.residual.position <= tolerance_.position &&
+        (!std::isfinite(tolerance_.angle) || here_.residual.angle <= tolerance_.angle)) {
+      return;
+    }
+    Problem problem;
+    problem.code = ErrorCode::kDiscontinuous;
+    problem.message = "the start joints are not on the curve that is to be followed";
+    problem.share = 0.0;
+    problem.value = here_.residual.position;
+    problem.limit = tolerance_.position;
+    throw MotionError(std::move(problem));
+  }
+
+  [[noreturn]] void fail() const {
+    if (crossing_) throw_limit_crossing(arm_, *crossing_, crossing_share_, options_);
+    throw_insertion_failure(follower_, curve_, here_.point, s_, options_);
+  }
+
+  /// Tries the piece from here to `next`; shortens the step where it does not hold.
+  bool advance(double next) {
+    const double h = next - s_;
+    const PathPoint& from = here_.point;
+    const JointVector guess = from.q + h * (from.q1 + h * (0.5 * from.q2 + h / 6.0 * from.q3));
+    std::optional<CurveFollower::Knot> knot = follower_.solve(next, guess);
+    if (!knot || knot->rate_residual > kRateResidual) {
+      step_ = 0.5 * h;
+      return false;
+    }
+    JointPiece piece = JointPiece::hermite(from, knot->point, h);
+    // Three samples tell quickly, and how much shorter; only the proof counts in the end.
+    double ratio = 0.0;
+    for (const double u : {0.5, 0.25, 0.75}) {
+      const Deviation at = deviation_at(arm_, piece, curve_, s_, u * h);
+      ratio = std::max(ratio, at.position / tolerance_.position);
+      if (std::isfinite(tolerance_.angle)) ratio = std::max(ratio, at.angle / tolerance_.angle);
+    }
+    if (!(ratio <= 1.0)) {
+      step_ = h * std::clamp(0.9 * std::pow(ratio, -1.0 / kErrorOrder), 0.1, 0.8);
+      return false;
+    }
+    const std::optional<Deviation> proven = prove_deviation(arm_, piece, curve_, s_, tolerance_);
+    if (!proven) {
+      step_ = 0.75 * h;
+      return false;
+    }
+    piece.position_deviation = proven->position;
+    piece.angle_deviation = proven->angle;
+    keep(piece, *knot, next);
+    step_ = h * std::clamp(0.9 * std::pow(std::max(ratio, 1e-12), -1.0 / kErrorOrder), 0.8, 3.0);
+    return true;
+  }
+
+  void keep(const JointPiece& piece, const CurveFollower::Knot& knot, double next) {
+    hold_limits(piece);
+    result_.position_deviation = std::max(result_.position_deviation, piece.position_deviation);
+    result_.angle_deviation = std::max(result_.angle_deviation, piece.angle_deviation);
+    result_.pieces.push_back(piece);
+    result_.knots.push_back(knot.point.q);
+    here_ = knot;
+    here_.point.q3 = piece.at(piece.length).q3;
+    s_ = next;
+  }
+
+  /// A breach is told at the end: only then is known how far beyond the limit the joint would go.
+  void hold_limits(const JointPiece& piece) {
+    if (!crossing_) {
+      crossing_ = piece_position_violation(piece, limits_);
+      if (crossing_) crossing_share_ = (s_ + crossing_->s) / curve_.length();
+      return;
+    }
+    const double value = farthest_value(piece, limits_, *crossing_);
+    const bool farther =
+        std::abs(value - crossing_->limit) > std::abs(crossing_->value - crossing_->limit);
+    const bool same_side = (value > crossing_->limit) == (crossing_->value > crossing_->limit);
+    if (farther && same_side) crossing_->value = value;
+  }
+
+  const ForwardKinematics& arm_;
+  const JointLimits& limits_;
+  const TaskCurve& curve_;
+  const InsertionOptions& options_;
+  CurveFollower follower_;
+  Deviation tolerance_;
+  CurveFollower::Knot here_;
+  Insertion result_;
+  std::optional<LimitCrossing> crossing_;
+  double crossing_share_ = 0.0;
+  double s_ = 0.0;
+  double step_;
+};
+
+}  // namespace
+
+Insertion insert_curve(const ForwardKinematics& arm, const JointLimits& limits,
+                       const TaskCurve& curve, const JointVector& start,
+                       const InsertionOptions& options) {
+  check_arguments(arm, limits, curve, start, options);
+  return Marcher(arm, limits, curve, start, options).run();
+}
+
+}  // namespace viapoint

@@ -1,0 +1,171 @@
+#include "path/insertion_failure.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <random>
+#include <string>
+#include <utility>
+
+#include "viapoint/core/units.hpp"
+
+namespace viapoint {
+namespace {
+
+/// How far ahead of the stop the arm is asked whether it gets there at all, as a share of the
+/// curve.
+constexpr double kProbe = 1e-3;
+/// The curve counts as reached ahead when it is missed by less than this share of the tolerances:
+/// the arm may otherwise stand at the edge of its workspace, out of it by less than they are.
+constexpr double kReachedShare = 1e-3;
+/// Starts of the search for any solution ahead; fixed seed, so that a refusal repeats.
+constexpr int kProbeStarts = 24;
+constexpr unsigned kProbeSeed = 1;
+/// Smallest over largest singular value above which the arm counts as clear of singularities.
+constexpr double kClearOfSingularity = 1e-2;
+
+constexpr const char* kWristWayOut =
+    "keep the tool position straight and interpolate the wrist joints (orientation=\"wrist\")";
+
+std::string format(const char* pattern, double a, double b = 0.0, double c = 0.0) {
+  std::array<char, 300> text{};
+  std::snprintf(text.data(), text.size(), pattern, a, b, c);
+  return text.data();
+}
+
+/// The least miss ahead over many starts, [m and rad], and whether it is within the tolerances.
+struct Ahead {
+  Twist miss;
+  bool reached = false;
+};
+
+Ahead look_ahead(const CurveFollower& follower, const PathPoint& here, double s,
+                 const InsertionOptions& options) {
+  Ahead best;
+  best.miss.setConstant(std::numeric_limits<double>::infinity());
+  std::mt19937 random(kProbeSeed);
+  std::normal_distribution<double> normal;
+  for (int start = 0; start < kProbeStarts && !best.reached; ++start) {
+    JointVector guess = here.q;
+    const double spread = 0.1 * start;
+    for (int i = 0; i < guess.size(); ++i) guess[i] += spread * normal(random);
+    const Twist miss = follower.nearest_miss(s, guess);
+    if (miss.norm() < best.miss.norm()) best.miss = miss;
+    best.reached = best.miss.head<3>().norm() <= kReachedShare * options.position_tolerance &&
+                   best.miss.tail<3>().norm() <= kReachedShare * options.angle_tolerance;
+  }
+  return best;
+}
+
+/// "z and rotation about x", from the coordinates that carry the miss.
+std::string coordinate_names(const Twist& miss) {
+  static constexpr std::array<const char*, 6> kNames = {
+      "x", "y", "z", "rotation about x", "rotation about y", "rotation about z"};
+  const double largest = miss.cwiseAbs().maxCoeff();
+  std::string names;
+  for (int i = 0; i < 6; ++i) {
+    if (std::abs(miss[i]) < 0.1 * largest) continue;
+    if (!names.empty()) names += ", ";
+    names += kNames[static_cast<size_t>(i)];
+  }
+  return names;
+}
+
+Problem too_few_joints(const CurveFollower& follower, const Ahead& ahead, double share) {
+  Problem problem;
+  problem.code = ErrorCode::kUncontrolled;
+  problem.message = format("beyond %.2f %% of the curve the %.0f joints of the arm cannot hold ",
+                           100.0 * share, static_cast<double>(follower.free_joints())) +
+                    coordinate_names(ahead.miss);
+  problem.value = ahead.miss.norm();
+  problem.ways_out = {"ask only for the tool position, or keep the orientation the arm can hold",
+                      "use a joint move to the goal"};
+  return problem;
+}
+
+Problem out_of_reach(const Ahead& ahead, double share, const InsertionOptions& options) {
+  Problem problem;
+  problem.code = ErrorCode::kUnreachable;
+  problem.message =
+      format("the curve leaves the workspace at %.2f %% of its length: %.1f %% farther on the arm ",
+             100.0 * share, 100.0 * kProbe) +
+      format("misses it by %.3g mm and %.3g°", 1e3 * ahead.miss.head<3>().norm(),
+             ahead.miss.tail<3>().norm() / kDegree);
+  problem.value = ahead.miss.head<3>().norm();
+  problem.limit = options.position_tolerance;
+  problem.ways_out = {"move the points nearer to the arm",
+                      "use a joint move where the straight line is not needed"};
+  return problem;
+}
+
+Problem singular(const PathPoint& here, double smallest, double share,
+                 const InsertionOptions& options) {
+  int fastest = 0;
+  here.q1.cwiseAbs().maxCoeff(&fastest);
+  Problem problem;
+  problem.code = ErrorCode::kSingular;
+  problem.message = format(
+      "at %.2f %% of the curve the arm is singular (smallest singular value %.1g): the rate "
+      "of joint %.0f grows without bound",
+      100.0 * share, smallest, fastest + 1.0);
+  problem.joint = fastest;
+  problem.value = smallest;
+  problem.ways_out = {"use a joint move for this leg",
+                      "move the line a little aside, or change its orientation"};
+  if (options.hold == Hold::kPose) problem.ways_out.emplace_back(kWristWayOut);
+  return problem;
+}
+
+}  // namespace
+
+void throw_insertion_failure(const CurveFollower& follower, const TaskCurve& curve,
+                             const PathPoint& here, double s, const InsertionOptions& options) {
+  const double share = s / curve.length();
+  const Eigen::VectorXd values = follower.singular_values(here.q);
+  const double smallest = values[values.size() - 1];
+  const Ahead ahead =
+      look_ahead(follower, here, std::min(s + kProbe * curve.length(), curve.length()), options);
+  Problem problem;
+  if (ahead.reached) {
+    problem = singular(here, smallest, share, options);
+  } else if (follower.free_joints() < follower.coordinates() &&
+             smallest > kClearOfSingularity * values[0]) {
+    problem = too_few_joints(follower, ahead, share);
+  } else {
+    problem = out_of_reach(ahead, share, options);
+  }
+  problem.share = share;
+  throw MotionError(std::move(problem));
+}
+
+void throw_limit_crossing(const ForwardKinematics& arm, const LimitCrossing& crossing, double share,
+                          const InsertionOptions& options) {
+  Problem problem;
+  problem.share = share;
+  problem.value = crossing.value;
+  problem.limit = crossing.limit;
+  const double percent = 100.0 * share;
+  if (crossing.coupling >= 0) {
+    problem.code = ErrorCode::kCouplingLimit;
+    problem.message = format("coupled limit %.0f, ", crossing.coupling + 1.0) +
+                      format("%.6g, is passed at %.2f %% of the curve; its value would go to %.6g",
+                             crossing.limit, percent, crossing.value);
+  } else {
+    problem.code = ErrorCode::kJointLimit;
+    problem.joint = crossing.joint;
+    const bool turns = arm.type(crossing.joint) == JointType::kRevolute;
+    const double unit = turns ? kDegree : kMillimetre;
+    problem.message =
+        format("joint %.0f ", crossing.joint + 1.0) +
+        format(turns
+                   ? "passes its limit of %.6g° at %.2f %% of the curve and would go to %.6g°"
+                   : "passes its limit of %.6g mm at %.2f %% of the curve and would go to %.6g mm",
+               crossing.limit / unit, percent, crossing.value / unit);
+  }
+  problem.ways_out = {"use a joint move for this leg"};
+  if (options.hold == Hold::kPose) problem.ways_out.emplace_back(kWristWayOut);
+  problem.ways_out.emplace_back("start the curve on another branch");
+  throw MotionError(std::move(problem));
+}
+
+}  // namespace viapoint
