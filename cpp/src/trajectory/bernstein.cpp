@@ -5,15 +5,15 @@
 
 namespace viapoint {
 
-double Bernstein::hull() const { return *std::ranges::max_element(coefficients()); }
+double BernsteinPolynomial::hull() const { return *std::ranges::max_element(coefficients()); }
 
-Bernstein Bernstein::operator-() const {
-  Bernstein negative = *this;
+BernsteinPolynomial BernsteinPolynomial::operator-() const {
+  BernsteinPolynomial negative = *this;
   for (double& b : negative.coefficients()) b = -b;
   return negative;
 }
 
-double Bernstein::operator()(double x) const {
+double BernsteinPolynomial::operator()(double x) const {
   auto b = coefficients_;
   for (std::size_t left = size_; left > 1; --left) {
     for (std::size_t i = 0; i + 1 < left; ++i) b[i] += x * (b[i + 1] - b[i]);
@@ -21,8 +21,8 @@ double Bernstein::operator()(double x) const {
   return b[0];
 }
 
-Bernstein Bernstein::split_off_upper_half() {
-  Bernstein upper(degree());
+BernsteinPolynomial BernsteinPolynomial::split_off_upper_half() {
+  BernsteinPolynomial upper(degree());
   std::array<double, kMaxBernsteinDegree + 1> b = coefficients_;
   for (std::size_t r = 0; r < size_; ++r) {
     const std::size_t last = size_ - 1 - r;
@@ -37,7 +37,7 @@ namespace {
 
 /// A part of the polynomial under search: f on [start, start + width].
 struct Part {
-  Bernstein f;
+  BernsteinPolynomial f;
   double start = 0.0;
   double width = 1.0;
 };
@@ -49,7 +49,11 @@ constexpr std::size_t kStackSize = 52;
 /// then counts with its hull, which is loose but true.
 constexpr int kMaxSplits = 10000;
 
-bool finite(const Bernstein& f) {
+/// Rounding of up to 50 halvings, as a share of the largest coefficient: 25 means each, by half an
+/// epsilon.
+constexpr double kSplitRounding = 50 * 12.5 * std::numeric_limits<double>::epsilon();
+
+bool finite(const BernsteinPolynomial& f) {
   double sum = 0.0;
   for (const double b : f.coefficients()) sum += 0.0 * b;
   return sum == 0.0;
@@ -57,7 +61,7 @@ bool finite(const Bernstein& f) {
 
 /// Bounds f and takes its ends as reached. True where that is all there is to know of it.
 bool close(Peak& peak, std::optional<double>& place, double tolerance, double rounding,
-           const Bernstein& f, double start, double width) {
+           const BernsteinPolynomial& f, double start, double width) {
   if (f.first() > peak.reached) {
     peak.reached = f.first();
     place = start;
@@ -98,7 +102,8 @@ std::size_t halve(std::array<Part, kStackSize>& stack, std::size_t size, const C
 
 }  // namespace
 
-std::optional<double> raise(Peak& peak, const Bernstein& f, double tolerance, double rounding) {
+std::optional<double> raise(Peak& peak, const BernsteinPolynomial& f, double tolerance,
+                            double rounding) {
   if (!finite(f)) {
     peak.reached = peak.bound = std::numeric_limits<double>::infinity();
     return 0.0;
@@ -106,6 +111,7 @@ std::optional<double> raise(Peak& peak, const Bernstein& f, double tolerance, do
   std::optional<double> place;
   if (close(peak, place, tolerance, rounding, f, 0.0, 1.0)) return place;
 
+  rounding += kSplitRounding * std::max(f.hull(), (-f).hull());
   const auto closed = [&](const Part& part) {
     return close(peak, place, tolerance, rounding, part.f, part.start, part.width);
   };

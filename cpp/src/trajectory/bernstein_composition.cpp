@@ -118,12 +118,20 @@ double magnitude(const Scaled& f) {
   return largest;
 }
 
-/// u by time: its polynomials, bounds of them, and the sums of its monomials' magnitudes, which
-/// say how much rounding they may hold.
+/// Rounding of u's own coefficients, as a share of the sum of its monomials' magnitudes: six terms
+/// of the conversion, each with a product, by half an epsilon.
+constexpr double kConversionRounding = 4.0 * std::numeric_limits<double>::epsilon();
+/// Rounding of the k-th power, as a share of k times its magnitude: a product (at most 6 terms each
+/// under 4 of Leibniz' rule) for every factor, one elevation (21 terms), division, and the sum over
+/// the powers, each by half an epsilon.
+constexpr double kProductRounding = 32.0 * std::numeric_limits<double>::epsilon();
+
+/// u by time: its polynomials, bounds of them, and bounds of their rounding, that of a product with
+/// them included.
 struct TimingJet {
   Jet jet;
   Magnitude size;
-  Magnitude monomials;
+  Magnitude error;
 };
 
 TimingJet timing_jet(const TrajectoryPiece& piece, int degree) {
@@ -133,27 +141,23 @@ TimingJet timing_jet(const TrajectoryPiece& piece, int degree) {
     const auto d = static_cast<std::size_t>(order);
     u.jet[d] = degree >= order ? from_monomials(a, degree - order) : Scaled{};
     u.size[d] = magnitude(u.jet[d]);
-    u.monomials[d] = 0.0;
-    for (const double c : a) u.monomials[d] += std::abs(c);
+    double monomials = 0.0;
+    for (const double c : a) monomials += std::abs(c);
+    u.error[d] = kConversionRounding * monomials + kProductRounding * u.size[d];
     for (std::size_t k = 1; k < 6; ++k) a[k - 1] = static_cast<double>(k) * a[k] / piece.duration;
     a[5] = 0.0;
   }
   return u;
 }
 
-Bernstein unscaled(const Scaled& f) {
-  Bernstein result(std::max(f.degree, 0));
+BernsteinPolynomial unscaled(const Scaled& f) {
+  BernsteinPolynomial result(std::max(f.degree, 0));
   for (int i = 0; i <= f.degree; ++i) {
     const auto at = static_cast<std::size_t>(i);
     result.coefficients()[at] = f.c[at] / binomial(f.degree, i);
   }
   return result;
 }
-
-/// Rounding steps behind a coefficient of a power of u, for every power: its conversion (6 terms),
-/// products of up to 6 terms under 4 terms of Leibniz' rule, elevation (21), division, and the sum
-/// over the powers (6) and subdivision. Each errs by at most half an epsilon.
-constexpr double kRounding = 64.0 * std::numeric_limits<double>::epsilon();
 
 }  // namespace
 
@@ -171,18 +175,18 @@ BernsteinComposition::BernsteinComposition(const TrajectoryPiece& piece)
     }
     const Scaled raise = one(timing_degree_ * (path_degree_ - k));
     // First order in the error of u: d(u^k) = k u^(k-1) du.
-    const Magnitude error = leibniz(u.monomials, size_before);
+    const Magnitude error = leibniz(u.error, size_before);
     const auto column = static_cast<std::size_t>(k) - 1;
     for (std::size_t d = 0; d < kOrders; ++d) {
       powers_[d][column] = unscaled(raise.degree > 0 ? product(raise, power[d]) : power[d]);
-      rounding_[d][column] = kRounding * k * error[d];
+      rounding_[d][column] = k * error[d];
     }
   }
 }
 
-Bernstein BernsteinComposition::of(const Path& path, int order) const {
+BernsteinPolynomial BernsteinComposition::of(const Path& path, int order) const {
   const auto& powers = powers_[static_cast<std::size_t>(order)];
-  Bernstein sum(std::max(0, timing_degree_ * path_degree_ - order));
+  BernsteinPolynomial sum(std::max(0, timing_degree_ * path_degree_ - order));
   const auto b = sum.coefficients();
   if (order == 0) std::ranges::fill(b, path[0]);
   for (std::size_t k = 1; k <= static_cast<std::size_t>(path_degree_); ++k) {

@@ -88,7 +88,7 @@ class Walk {
 
   void check_timing(const BernsteinComposition& composition, const TrajectoryPiece& piece,
                     std::size_t index) {
-    const Bernstein u = composition.timing();
+    const BernsteinPolynomial u = composition.timing();
     // Shifted so that both excesses are peaks above what is allowed anyhow.
     Peak high{1.0, 1.0};
     Peak low{0.0, 0.0};
@@ -101,7 +101,7 @@ class Walk {
     report(piece, index, text.str());
   }
 
-  void take(PlacedPeak& peak, const Bernstein& f, double tolerance, double rounding,
+  void take(PlacedPeak& peak, const BernsteinPolynomial& f, double tolerance, double rounding,
             const TrajectoryPiece& piece) {
     if (const auto x = raise(peak.peak, f, tolerance, rounding)) {
       peak.time = time_ + *x * piece.duration;
@@ -121,7 +121,7 @@ class Walk {
                                          limits_.jerk[at]};
     for (std::size_t d = 0; d < 3; ++d) {
       const int order = static_cast<int>(d) + 1;
-      const Bernstein f = composition.of(path, order);
+      const BernsteinPolynomial f = composition.of(path, order);
       const double rounding = composition.rounding(path, order);
       PlacedPeak& rate = joint.rates[d];
       const double tolerance = kTightness * std::max(limit[d], rate.peak.reached);
@@ -132,7 +132,7 @@ class Walk {
 
   void add_range(const BernsteinComposition& composition, const BernsteinComposition::Path& path,
                  const TrajectoryPiece& piece, PlacedPeak& highest, PlacedPeak& lowest) {
-    const Bernstein q = composition.of(path, 0);
+    const BernsteinPolynomial q = composition.of(path, 0);
     const double rounding = composition.rounding(path, 0);
     take(highest, q, kTightness, rounding, piece);
     take(lowest, -q, kTightness, rounding, piece);

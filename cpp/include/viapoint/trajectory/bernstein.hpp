@@ -17,10 +17,10 @@ namespace viapoint {
 inline constexpr int kMaxBernsteinDegree = 25;
 
 /// One polynomial on [0, 1]. Fixed capacity, no heap. Real-time: safe. Threads: any.
-class Bernstein {
+class BernsteinPolynomial {
  public:
   /// Zero, of the given degree. @pre 0 <= degree <= kMaxBernsteinDegree
-  explicit Bernstein(int degree = 0) : size_(static_cast<std::size_t>(degree) + 1) {
+  explicit BernsteinPolynomial(int degree = 0) : size_(static_cast<std::size_t>(degree) + 1) {
     coefficients_.fill(0.0);
   }
 
@@ -33,11 +33,11 @@ class Bernstein {
   [[nodiscard]] double last() const { return coefficients_[size_ - 1]; }
   /// The largest coefficient: f(x) <= hull() on [0, 1].
   [[nodiscard]] double hull() const;
-  [[nodiscard]] Bernstein operator-() const;
+  [[nodiscard]] BernsteinPolynomial operator-() const;
   /// f(x) by de Casteljau, O(degree²). Meant for tests and single values.
   [[nodiscard]] double operator()(double x) const;
   /// Keeps [0, 1/2] here, scaled to [0, 1], and returns [1/2, 1] likewise (de Casteljau).
-  [[nodiscard]] Bernstein split_off_upper_half();
+  [[nodiscard]] BernsteinPolynomial split_off_upper_half();
 
  private:
   std::array<double, kMaxBernsteinDegree + 1> coefficients_;
@@ -54,9 +54,10 @@ struct Peak {
 /// `tolerance` + `rounding` above what is reached. Branch and bound: a part of f whose hull is
 /// below what has been reached already costs one pass over its coefficients.
 /// @param tolerance gap allowed between reached and bound, > 0
-/// @param rounding  what the coefficients of f may be wrong by; added to the bound
+/// @param rounding  what the coefficients of f may be wrong by; added to the bound, as is that of
+///                  the halvings (1.4e-13 of the largest coefficient)
 /// @returns where f reaches a new highest value; nothing if it does not
-std::optional<double> raise(Peak& peak, const Bernstein& f, double tolerance,
+std::optional<double> raise(Peak& peak, const BernsteinPolynomial& f, double tolerance,
                             double rounding = 0.0);
 
 }  // namespace viapoint
