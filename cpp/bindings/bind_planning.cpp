@@ -59,8 +59,17 @@ void fill(const Trajectory& trajectory, SampleArrays& arrays, double* times, py:
   }
 }
 
+/// A program that only waits for no time plans to a motion without pieces.
+void require_pieces(const MotionHandle& motion) {
+  if (motion.trajectory->pieces().empty()) {
+    throw MotionError(ErrorCode::kEmptyProgram, "The motion has no duration, so no states.",
+                      {"Add a move or a wait to the program."});
+  }
+}
+
 /// 0, dt, 2 dt, … and the exact end; the last step may be shorter.
 py::dict sample(const MotionHandle& motion, double dt) {
+  require_pieces(motion);
   if (!(dt > 0.0) || !std::isfinite(dt)) {
     throw MotionError(ErrorCode::kBadArgument,
                       "dt is " + std::to_string(dt) + " s; it must be positive and finite.");
@@ -83,6 +92,7 @@ py::dict sample(const MotionHandle& motion, double dt) {
 
 /// At the given instants [s], ascending; outside the motion the ends hold.
 py::dict sample_at(const MotionHandle& motion, const Vector& times) {
+  require_pieces(motion);
   const auto count = static_cast<py::ssize_t>(times.size());
   SampleArrays arrays(count, motion.trajectory->joints());
   double* t = arrays.t.mutable_data();

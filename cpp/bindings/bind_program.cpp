@@ -1,4 +1,6 @@
 // Motion programs: steps are appended from Python, which checks the arguments first.
+#include <tuple>
+
 #include "bindings.hpp"
 
 namespace viapoint::python {
@@ -46,6 +48,32 @@ std::string kind_of(const Step& step) {
   return std::visit(Name{}, step.what);
 }
 
+using TargetRow = std::tuple<int, std::string, Eigen::MatrixXd>;
+
+TargetRow row_of(int step, const Target& target) {
+  if (const auto* joints = std::get_if<JointTarget>(&target)) return {step, "joints", joints->q};
+  if (const auto* pose = std::get_if<PoseTarget>(&target)) {
+    return {step, "pose", pose->pose_base_tool.matrix()};
+  }
+  return {step, "position", std::get<PositionTarget>(target).position};
+}
+
+std::vector<TargetRow> targets_of(const MotionProgram& program) {
+  std::vector<TargetRow> rows;
+  for (size_t i = 0; i < program.steps.size(); ++i) {
+    const auto step = static_cast<int>(i);
+    const auto& what = program.steps[i].what;
+    if (const auto* ptp = std::get_if<PtpMove>(&what)) {
+      rows.push_back(row_of(step, ptp->target));
+    } else if (const auto* lin = std::get_if<LinMove>(&what)) {
+      rows.push_back(row_of(step, lin->target));
+    } else if (const auto* timed = std::get_if<TimedMove>(&what)) {
+      for (const TimedPoint& point : timed->points) rows.push_back(row_of(step, point.target));
+    }
+  }
+  return rows;
+}
+
 void append(MotionProgram& program, decltype(Step::what) what, const MoveOptions& options,
             std::string file, int line) {
   program.steps.push_back({std::move(what), options, {std::move(file), line}});
@@ -59,8 +87,11 @@ void bind_parts(py::module_& m) {
           py::arg("q"))
       .def_static(
           "pose",
-          [](const Eigen::Matrix4d& pose) { return TargetHandle{PoseTarget{pose_from(pose)}}; },
-          py::arg("pose"))
+          [](const Eigen::Matrix4d& pose, double correction) {
+            return TargetHandle{PoseTarget{pose_from(pose), correction}};
+          },
+          py::arg("pose"), py::arg("correction") = 0.0,
+          "A pose, and how far the matrix it was given as was from a rotation.")
       .def_static(
           "position",
           [](const Eigen::Vector3d& position) { return TargetHandle{PositionTarget{position}}; },
@@ -101,6 +132,7 @@ void bind_program(py::module_& m) {
             return std::pair<std::string, int>(source.file, source.line);
           },
           py::arg("step"), "File and line (from 1; 0 where unknown) of a step.")
+      .def("targets", &targets_of, "Step, kind of target and its array, for every target.")
       .def(
           "add_movej",
           [](MotionProgram& p, const TargetHandle& target, const MoveOptions& options,

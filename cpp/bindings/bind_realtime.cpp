@@ -5,6 +5,7 @@
 
 #include "bindings.hpp"
 #include "viapoint/drives/simulated_drive.hpp"
+#include "viapoint/realtime/log_csv.hpp"
 
 namespace viapoint::python {
 namespace {
@@ -40,6 +41,12 @@ struct LoopHandle {
 
 struct JobHandle {
   std::shared_ptr<Job> job;
+  int joints = 0;
+};
+
+/// The cycles of a run, kept in C++ until somebody asks for arrays or a file.
+struct LogHandle {
+  std::vector<LogRecord> records;
   int joints = 0;
 };
 
@@ -101,6 +108,38 @@ Array rows(const std::vector<LogRecord>& records, int joints, JointVector LogRec
   return out;
 }
 
+py::dict columns_of(const LogHandle& log) {
+  const std::vector<LogRecord>& records = log.records;
+  const int joints = log.joints;
+  py::dict out;
+  out["cycle"] = column<std::uint64_t>(records, [](const LogRecord& r) { return r.cycle; });
+  out["stamp"] = column<std::int64_t>(records, [](const LogRecord& r) { return r.stamp; });
+  out["latency"] = column<std::int64_t>(records, [](const LogRecord& r) { return r.latency; });
+  out["compute"] = column<std::int64_t>(records, [](const LogRecord& r) { return r.compute; });
+  out["nominal_time"] = column<double>(records, [](const LogRecord& r) { return r.nominal_time; });
+  out["rate"] = column<double>(records, [](const LogRecord& r) { return r.rate; });
+  out["move"] = column<std::int32_t>(records, [](const LogRecord& r) { return r.move; });
+  out["state"] = column<std::uint8_t>(records, [](const LogRecord& r) { return r.state; });
+  out["outputs"] = column<std::uint64_t>(records, [](const LogRecord& r) { return r.outputs; });
+  out["q"] = rows(records, joints, &LogRecord::q);
+  out["qd"] = rows(records, joints, &LogRecord::qd);
+  out["qdd"] = rows(records, joints, &LogRecord::qdd);
+  out["qddd"] = rows(records, joints, &LogRecord::qddd);
+  out["measured"] = rows(records, joints, &LogRecord::measured);
+  return out;
+}
+
+void bind_log(py::module_& m) {
+  py::class_<LogHandle>(m, "Log", "Every cycle of a run as it was executed.")
+      .def("__len__", [](const LogHandle& log) { return log.records.size(); })
+      .def("columns", &columns_of, "A dict of arrays, one row a cycle.")
+      .def(
+          "save_csv",
+          [](const LogHandle& log, const std::string& path) { write_log_csv(path, log.records); },
+          py::arg("path"), py::call_guard<Release>(),
+          "Writes the same table as viapoint-controller --log.");
+}
+
 void bind_job(py::module_& m) {
   py::class_<RunReport>(m, "RunReport", "Figures of one run; times in seconds.")
       .def_readonly("cycles", &RunReport::cycles)
@@ -130,40 +169,16 @@ void bind_job(py::module_& m) {
       .def_property_readonly("duration", [](const JobHandle& j) { return j.job->duration(); })
       .def_property_readonly("overruns", [](const JobHandle& j) { return j.job->overruns(); })
       .def_property_readonly("move", [](const JobHandle& j) { return j.job->move(); })
-      .def("log",
-           [](const JobHandle& j) {
-             std::vector<LogRecord> records;
-             {
-               const Release release;
-               records = j.job->log();
-             }
-             return log_arrays(records, j.joints);
-           })
+      .def(
+          "log", [](const JobHandle& j) { return LogHandle{j.job->log(), j.joints}; },
+          py::call_guard<Release>())
       .def("report", [](const JobHandle& j) { return j.job->report(); }, py::call_guard<Release>());
 }
 
 }  // namespace
 
-py::dict log_arrays(const std::vector<LogRecord>& records, int joints) {
-  py::dict out;
-  out["cycle"] = column<std::uint64_t>(records, [](const LogRecord& r) { return r.cycle; });
-  out["stamp"] = column<std::int64_t>(records, [](const LogRecord& r) { return r.stamp; });
-  out["latency"] = column<std::int64_t>(records, [](const LogRecord& r) { return r.latency; });
-  out["compute"] = column<std::int64_t>(records, [](const LogRecord& r) { return r.compute; });
-  out["nominal_time"] = column<double>(records, [](const LogRecord& r) { return r.nominal_time; });
-  out["rate"] = column<double>(records, [](const LogRecord& r) { return r.rate; });
-  out["move"] = column<std::int32_t>(records, [](const LogRecord& r) { return r.move; });
-  out["state"] = column<std::uint8_t>(records, [](const LogRecord& r) { return r.state; });
-  out["outputs"] = column<std::uint64_t>(records, [](const LogRecord& r) { return r.outputs; });
-  out["q"] = rows(records, joints, &LogRecord::q);
-  out["qd"] = rows(records, joints, &LogRecord::qd);
-  out["qdd"] = rows(records, joints, &LogRecord::qdd);
-  out["qddd"] = rows(records, joints, &LogRecord::qddd);
-  out["measured"] = rows(records, joints, &LogRecord::measured);
-  return out;
-}
-
 void bind_realtime(py::module_& m) {
+  bind_log(m);
   bind_job(m);
   py::class_<LoopHandle>(m, "ControllerLoop", "The 2 ms loop over a simulated drive.")
       .def(py::init(&make_loop), py::arg("robot"), py::arg("start"), py::kw_only(),
@@ -204,13 +219,10 @@ void bind_realtime(py::module_& m) {
         for (const auto& [time, kind, value] : commands) {
           timed.push_back(command_from(time, kind, value));
         }
-        std::vector<LogRecord> records;
-        {
-          const Release release;
-          records = simulate(*motion.trajectory, motion.robot->limits(), std::move(timed),
-                             std::chrono::nanoseconds(std::llround(cycle * 1e9)));
-        }
-        return log_arrays(records, motion.trajectory->joints());
+        const Release release;
+        return LogHandle{simulate(*motion.trajectory, motion.robot->limits(), std::move(timed),
+                                  std::chrono::nanoseconds(std::llround(cycle * 1e9))),
+                         motion.trajectory->joints()};
       },
       py::arg("motion"), py::arg("commands"), py::arg("cycle"),
       "The interpolator in virtual time: one record a cycle.");

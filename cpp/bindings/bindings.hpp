@@ -58,9 +58,6 @@ void bind_program(py::module_& m);
 void bind_planning(py::module_& m);
 void bind_realtime(py::module_& m);
 
-/// The log of a run as a dict of arrays, one row a cycle.
-[[nodiscard]] py::dict log_arrays(const std::vector<LogRecord>& records, int joints);
-
 }  // namespace viapoint::python
 
 /// The textbook laws and the state-to-state profiles, in the submodule `profile`.

@@ -1,0 +1,65 @@
+"""viapoint: the motion kernel of an industrial robot controller.
+
+Motion programs in, proven 2 ms setpoints out::
+
+    import viapoint as vp
+    from viapoint import deg, mm
+
+    robot = vp.load_robot("puma560")
+    program = vp.Program(robot, start=[0, 0, 0, 0, 30, 0] * deg)
+    program.movej([20, 30, -10, 0, 40, 0] * deg, zone=20 * mm).movel(position=[0.5, 0.2, 0.3])
+    with vp.connect("sim://puma560", start=program.start) as arm:
+        arm.run(program)
+
+SI units and radians everywhere; poses are ``pose_base_tool``, (4, 4). Every error is a
+`MotionError` (see `viapoint.errors`).
+"""
+
+from . import errors, profile
+from ._arm import Arm, connect
+from ._core import Certificate, Corner, Extremum, JointLimits, Problem, Singularity, __version__
+from ._job import Job, RunReport
+from ._motion import Motion
+from ._points import PointList
+from ._program import Program
+from ._report import Report
+from ._robot import Robot, joint_robot, load_robot
+from ._run_log import RunLog
+from ._samples import Samples
+from ._simulation import simulate
+from ._units import deg, mm
+from ._zone import Zone, deviation, joint_deviation, radius
+from .errors import MotionError
+
+__all__ = [
+    "Arm",
+    "Certificate",
+    "Corner",
+    "Extremum",
+    "Job",
+    "JointLimits",
+    "Motion",
+    "MotionError",
+    "PointList",
+    "Problem",
+    "Program",
+    "Report",
+    "Robot",
+    "RunLog",
+    "RunReport",
+    "Samples",
+    "Singularity",
+    "Zone",
+    "__version__",
+    "connect",
+    "deg",
+    "deviation",
+    "errors",
+    "joint_deviation",
+    "joint_robot",
+    "load_robot",
+    "mm",
+    "profile",
+    "radius",
+    "simulate",
+]

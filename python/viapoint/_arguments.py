@@ -1,0 +1,148 @@
+"""What every builder asks of its arguments: type, shape, finiteness and range, at once."""
+
+from __future__ import annotations
+
+import math
+import numbers
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from .errors import BadArgumentError, NotARotationError
+
+Vector: TypeAlias = npt.NDArray[np.float64]
+ArrayLike: TypeAlias = npt.ArrayLike
+
+NOTEWORTHY_CORRECTION = 1e-6
+"""A pose changed by less than this in every element was exact but for its last digits."""
+
+
+def numbers_of(value: ArrayLike, name: str) -> Vector:
+    """Return `value` as an array of finite floats, of any shape.
+
+    Raises
+    ------
+    BadArgumentError
+        Not numbers, or NaN or infinity among them; the message names `name` and the value.
+    """
+    try:
+        raw = np.asarray(value)
+        if raw.dtype.kind not in "iuf":
+            raise TypeError
+        array = raw.astype(np.float64)
+    except (TypeError, ValueError):
+        raise BadArgumentError(f"{name} is {_short(value)}; it must hold numbers only.") from None
+    if not np.isfinite(array).all():
+        where = tuple(int(i) for i in np.argwhere(~np.isfinite(array))[0])
+        place = f"{name}[{', '.join(map(str, where))}]" if where else name
+        raise BadArgumentError(f"{place} is {array[where]}; every value must be finite.")
+    return array
+
+
+def vector(value: ArrayLike, name: str, size: int, meaning: str = "one value a joint") -> Vector:
+    """Return `value` as (size,) finite floats.
+
+    Raises
+    ------
+    BadArgumentError
+        Another shape, NaN, infinity or no numbers.
+    """
+    array = numbers_of(value, name)
+    if array.shape != (size,):
+        raise BadArgumentError(
+            f"{name} has the shape {array.shape}; it must be ({size},): {meaning}."
+        )
+    return array
+
+
+def pose(value: ArrayLike, name: str) -> tuple[Vector, float]:
+    """Return a (4, 4) pose with an exact rotation, and the largest element that was changed.
+
+    Raises
+    ------
+    BadArgumentError
+        Another shape, NaN, or a bottom row that is not 0 0 0 1.
+    NotARotationError
+        Farther from a rotation than rounding to two decimals can bring it.
+    """
+    array = numbers_of(value, name)
+    if array.shape != (4, 4):
+        raise BadArgumentError(f"{name} has the shape {array.shape}; a pose is (4, 4).")
+    try:
+        matrix, correction = _core.checked_pose(array)
+    except NotARotationError as error:
+        raise NotARotationError(f"{name}: {error.message}", ways_out=error.ways_out) from None
+    except BadArgumentError as error:
+        raise BadArgumentError(f"{name}: {error.message}", ways_out=error.ways_out) from None
+    return matrix, float(correction)
+
+
+def number(
+    value: object,
+    name: str,
+    unit: str = "",
+    *,
+    above: float = -math.inf,
+    least: float = -math.inf,
+    most: float = math.inf,
+) -> float:
+    """Return `value` as a finite float in its range: > above, >= least, <= most.
+
+    Raises
+    ------
+    BadArgumentError
+        No number, NaN, infinity, or out of range; the message gives the range and the unit.
+    """
+    of_unit = f" {unit}" if unit else ""
+    allowed = []
+    if above > -math.inf:
+        allowed.append(f"above {above:g}{of_unit}")
+    if least > -math.inf:
+        allowed.append(f"at least {least:g}{of_unit}")
+    if most < math.inf:
+        allowed.append(f"at most {most:g}{of_unit}")
+    what = "it must be a finite number" + (", " + " and ".join(allowed) if allowed else "")
+    if isinstance(value, (bool, np.bool_)) or not isinstance(value, numbers.Real):
+        raise BadArgumentError(f"{name} is {_short(value)}; {what}.")
+    result = float(value)
+    if not math.isfinite(result) or result <= above or result < least or result > most:
+        raise BadArgumentError(f"{name} is {result:g}{of_unit}; {what}.")
+    return result
+
+
+def integer(value: object, name: str, least: int, most: int) -> int:
+    """Return `value` as an int in [least, most].
+
+    Raises
+    ------
+    BadArgumentError
+        Not an integer, or out of range.
+    """
+    if isinstance(value, (bool, np.bool_)) or not isinstance(value, numbers.Integral):
+        raise BadArgumentError(
+            f"{name} is {_short(value)}; it must be an integer from {least} to {most}."
+        )
+    if not least <= int(value) <= most:
+        raise BadArgumentError(f"{name} is {value}; it must be from {least} to {most}.")
+    return int(value)
+
+
+def choice(value: object, name: str, allowed: tuple[str, ...]) -> str:
+    """Return `value`, one of the allowed words.
+
+    Raises
+    ------
+    BadArgumentError
+        Another word; the message lists the allowed ones.
+    """
+    if isinstance(value, str) and value in allowed:
+        return value
+    words = ", ".join(f'"{word}"' for word in allowed)
+    raise BadArgumentError(f"{name} is {_short(value)}; it must be one of {words}.")
+
+
+def _short(value: object) -> str:
+    text = repr(value)
+    return text if len(text) <= 60 else text[:57] + "..."

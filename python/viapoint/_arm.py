@@ -1,0 +1,264 @@
+"""A connected arm: it runs programs in the C++ 2 ms loop."""
+
+from __future__ import annotations
+
+import math
+from types import TracebackType
+from typing import TYPE_CHECKING, Protocol
+from urllib.parse import parse_qs, urlsplit
+
+import numpy as np
+
+from . import _core, _session
+from ._arguments import ArrayLike, Vector, number, vector
+from ._job import Execution, Job
+from ._motion import CYCLE, Motion
+from ._program import Program
+from ._robot import Robot, load_robot
+from ._virtual import VirtualLoop
+from .errors import BadArgumentError, StoppedError
+
+if TYPE_CHECKING:
+    from ._points import PointList
+
+PRIORITY = 80
+"""SCHED_FIFO priority of the loop, where the system permits it."""
+
+
+class Loop(Protocol):
+    """What an arm needs of the controller: `_core.ControllerLoop`, or `VirtualLoop`."""
+
+    override: float
+
+    def run(self, motion: _core.PlannedMotion) -> Execution: ...
+    @property
+    def measured(self) -> Vector: ...
+    @property
+    def position(self) -> Vector: ...
+    @property
+    def busy(self) -> bool: ...
+    @property
+    def is_open(self) -> bool: ...
+    @property
+    def shortcomings(self) -> list[str]: ...
+    def close(self) -> None: ...
+
+
+class Arm:
+    """A connected arm. Made by `connect`; use it in a ``with`` block.
+
+    Leaving the block waits for the run under way. An exception or Ctrl-C inside it brings the arm
+    to rest on its path first. Threads: any.
+
+    Attributes
+    ----------
+    robot : Robot
+        What the arm is.
+    """
+
+    def __init__(self, robot: Robot, loop: Loop, cycle: float = CYCLE) -> None:
+        self.robot = robot
+        self._loop = loop
+        self._cycle = cycle
+        self._jobs: list[Job] = []
+
+    def __repr__(self) -> str:
+        """Robot and state."""
+        return f"<Arm {self.robot.name}, {'connected' if self._loop.is_open else 'closed'}>"
+
+    def __enter__(self) -> Arm:
+        """Return the arm itself."""
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        """Wait for the run under way, or on an exception bring it to rest; then disconnect."""
+        try:
+            for job in self._jobs:
+                if kind is not None or job.state in ("pausing", "paused"):
+                    job.stop()
+                job.wait()
+        finally:
+            self.close()
+
+    def close(self) -> None:
+        """Disconnect; a run under way is brought to rest on its path first."""
+        self._loop.close()
+
+    def run(self, program: Program | Motion, wait: bool = True) -> Job:
+        """Run a program.
+
+        Parameters
+        ----------
+        program : Program or Motion
+            A program is planned first, and refused as a whole if anything is wrong with it.
+        wait : bool
+            Wait for the end. Ctrl-C meanwhile brings the arm to rest on its path and goes on up.
+
+        Returns
+        -------
+        Job
+            The run: its state, log and report; with ``wait=False`` still under way.
+
+        Raises
+        ------
+        NotAtStartError
+            The arm is not where the program starts.
+        MotionError
+            What `Program.plan` raises, or what the drive refuses: a broken limit, a motion that
+            starts or ends at speed.
+        BusyError
+            A run is already under way.
+        StoppedError
+            The run that was waited for was stopped before its end.
+        """
+        motion = _planned(program)
+        if motion.robot.fingerprint != self.robot.fingerprint:
+            raise BadArgumentError(
+                f'The program is for the robot "{motion.robot.name}" and its limits, the arm is '
+                f'"{self.robot.name}" with others.',
+                ways_out=["Connect with the program's robot: connect(..., robot=robot)."],
+            )
+        session = _session.current()
+        job = Job(self._loop.run(motion._core), motion, self._cycle)
+        self._jobs = [j for j in self._jobs if not j.ended] + [job]
+        session.started(motion, job)
+        if wait:
+            job.wait()
+            if job.state == "stopped":
+                raise StoppedError(
+                    f"The run was stopped {job.nominal_time:.3f} s along its {job.duration:.3f} s.",
+                    move=job.move,
+                    time=job.nominal_time,
+                    ways_out=["Plan a new program from where the arm rests: start=arm.joints."],
+                )
+        return job
+
+    @property
+    def override(self) -> float:
+        """Share of the planned speed, 0 to 1; changing it never leaves the path."""
+        return self._loop.override
+
+    @override.setter
+    def override(self, share: float) -> None:
+        self._loop.override = number(share, "override", least=0.0, most=1.0)
+
+    @property
+    def joints(self) -> Vector:
+        """What the drive last measured, (n,) [rad or m]."""
+        return self._loop.measured
+
+    @property
+    def pose(self) -> Vector:
+        """pose_base_tool at the measured joints, (4, 4) [m]."""
+        return self.robot.fk(self.joints)
+
+    @property
+    def busy(self) -> bool:
+        """True while a run is under way."""
+        return self._loop.busy
+
+    @property
+    def shortcomings(self) -> list[str]:
+        """What real-time right could not be had, one line each, and what would give it."""
+        return self._loop.shortcomings
+
+    def teach(self, name: str, points: PointList) -> Vector:
+        """Record the present joints as the point `name` of `points`, on disk at once.
+
+        Parameters
+        ----------
+        name : str
+            The point; one of the same name is replaced.
+        points : PointList
+            The list, and its file.
+
+        Returns
+        -------
+        ndarray, (n,)
+            The joints recorded [rad or m].
+
+        Raises
+        ------
+        FileError, BadProgramError
+            The file cannot be written, or what stands there is damaged (and is left alone).
+        """
+        joints = self.joints
+        points.record(name, joints)
+        return joints
+
+
+def connect(
+    url: str,
+    *,
+    start: ArrayLike | None = None,
+    robot: Robot | None = None,
+    cycle: float = CYCLE,
+) -> Arm:
+    """Connect to an arm.
+
+    Parameters
+    ----------
+    url : str
+        ``"sim://puma560"``: an arm simulated in this process, under the 2 ms C++ loop. A start may
+        follow: ``"sim://puma560?start=0,0.5,0,0,0,0"`` [rad or m].
+    start : array_like, (n,), optional
+        Joints where the simulated arm stands [rad or m]. Default: all zero.
+    robot : Robot, optional
+        Instead of loading the robot of the url: needed for other limits, and for `joint_robot`.
+    cycle : float
+        The loop's cycle [s].
+
+    Returns
+    -------
+    Arm
+        For a ``with`` block.
+
+    Raises
+    ------
+    BadArgumentError
+        Not such a url, or a start that does not fit.
+    BadRobotError
+        No such robot.
+    """
+    parts = urlsplit(url)
+    if parts.scheme != "sim" or not (parts.netloc or parts.path):
+        raise BadArgumentError(
+            f'url is "{url}"; this version connects to "sim://<robot>" only.',
+            ways_out=['For example connect("sim://puma560").'],
+        )
+    arm_robot = load_robot(parts.netloc + parts.path) if robot is None else robot
+    joints = np.zeros(arm_robot.joints)
+    if start is not None:
+        joints = vector(start, "start", arm_robot.joints)
+    elif parts.query:
+        joints = _start_of(parts.query, arm_robot.joints)
+    if _session.current().virtual:
+        return Arm(arm_robot, VirtualLoop(joints, cycle), cycle)
+    loop = _core.ControllerLoop(
+        arm_robot._core, joints, cycle=cycle, priority=PRIORITY, lock_memory=True
+    )
+    return Arm(arm_robot, loop, cycle)
+
+
+def _start_of(query: str, joints: int) -> Vector:
+    fields = parse_qs(query)
+    if set(fields) != {"start"} or len(fields["start"]) != 1:
+        raise BadArgumentError(f'The url ends in "?{query}"; only "?start=…" is known.')
+    try:
+        values = [float(text) for text in fields["start"][0].split(",")]
+    except ValueError:
+        values = [math.nan]
+    return vector(values, "start", joints)
+
+
+def _planned(program: Program | Motion) -> Motion:
+    if isinstance(program, Motion):
+        return program
+    if isinstance(program, Program):
+        return program.plan()
+    raise BadArgumentError(f"program is {program!r}; it must be a Program or a Motion.")

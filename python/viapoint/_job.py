@@ -1,0 +1,181 @@
+"""A motion under way."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from typing import Protocol
+
+from . import _core, _session
+from ._motion import CYCLE, Motion
+from ._run_log import RunLog
+
+ENDED = ("finished", "stopped", "fault")
+_SLICE = 0.05
+"""So long [s] a wait stays in C++ before Python looks after its signals."""
+
+
+class Execution(Protocol):
+    """What a job needs of the controller: `_core.Job`, or its stand-in in virtual time."""
+
+    def wait(self, timeout: float) -> bool: ...
+    def pause(self) -> None: ...
+    def resume(self) -> None: ...
+    def stop(self) -> None: ...
+    @property
+    def state(self) -> str: ...
+    @property
+    def nominal_time(self) -> float: ...
+    @property
+    def duration(self) -> float: ...
+    @property
+    def overruns(self) -> int: ...
+    @property
+    def move(self) -> int: ...
+    def log(self) -> _core.Log: ...
+    def report(self) -> _core.RunReport | RunReport: ...
+
+
+@dataclass(frozen=True)
+class RunReport:
+    """Figures of one run; times in seconds, NaN where there was no clock to measure.
+
+    Attributes
+    ----------
+    cycles, overruns : int
+        Cycles run, and those that woke a whole cycle late or more.
+    latency_p50, latency_p99, latency_max : float
+        Wake-up after its due instant [s].
+    compute_p50, compute_p99, compute_max : float
+        The tick itself [s].
+    wall_time : float
+        First to last cycle [s].
+    """
+
+    cycles: int
+    overruns: int
+    latency_p50: float
+    latency_p99: float
+    latency_max: float
+    compute_p50: float
+    compute_p99: float
+    compute_max: float
+    wall_time: float
+
+
+class Job:
+    """One motion under way. Threads: any.
+
+    Attributes
+    ----------
+    motion : Motion
+        What runs.
+    """
+
+    def __init__(self, execution: Execution, motion: Motion, period: float = CYCLE) -> None:
+        self._execution = execution
+        self._period = period
+        self.motion = motion
+
+    def __repr__(self) -> str:
+        """Name, state and progress."""
+        return (
+            f"<Job {self.motion.program.name!r}, {self.state}, "
+            f"{self.nominal_time:.3f} of {self.duration:.3f} s>"
+        )
+
+    @property
+    def state(self) -> str:
+        """``"running"``, ``"pausing"``, ``"paused"``, ``"stopping"``, ``"stopped"``, …."""
+        return self._execution.state
+
+    @property
+    def ended(self) -> bool:
+        """True when the arm is at rest and the job will not go on."""
+        return self.state in ENDED
+
+    @property
+    def nominal_time(self) -> float:
+        """How far along the motion the arm is [s]."""
+        return self._execution.nominal_time
+
+    @property
+    def duration(self) -> float:
+        """Nominal duration [s]."""
+        return self._execution.duration
+
+    @property
+    def move(self) -> int:
+        """Index of the program's step under way."""
+        return self._execution.move
+
+    @property
+    def overruns(self) -> int:
+        """Cycles so far that woke a whole cycle late or more."""
+        return self._execution.overruns
+
+    def wait(self, timeout: float | None = None) -> bool:
+        """Wait for the end.
+
+        Ctrl-C, or any other exception, while waiting brings the arm to rest on its path and then
+        goes on up.
+
+        Parameters
+        ----------
+        timeout : float, optional
+            At most so long [s]; for ever when left out.
+
+        Returns
+        -------
+        bool
+            True when the job has ended (see `state`), False at the timeout.
+
+        Raises
+        ------
+        DriveFaultError
+            The drive failed.
+        """
+        deadline = None if timeout is None else time.monotonic() + timeout
+        session = _session.current()
+        try:
+            while True:
+                left = _SLICE if deadline is None else deadline - time.monotonic()
+                if self._execution.wait(max(0.0, min(left, _SLICE))):
+                    session.waiting(self)
+                    session.ended(self)
+                    return True
+                session.waiting(self)
+                if deadline is not None and left <= _SLICE:
+                    return False
+        except BaseException:
+            self._come_to_rest()
+            raise
+
+    def pause(self) -> None:
+        """Come to rest on the path and stay there until `resume`."""
+        self._execution.pause()
+
+    def resume(self) -> None:
+        """Go on after `pause`."""
+        self._execution.resume()
+
+    def stop(self) -> None:
+        """Come to rest on the path; the job then ends as ``"stopped"``. Returns at once."""
+        self._execution.stop()
+
+    @property
+    def log(self) -> RunLog:
+        """Every cycle so far; complete once the job has ended."""
+        return RunLog.of(self._execution.log(), self.motion.robot, self._period)
+
+    @property
+    def report(self) -> RunReport:
+        """Cycles, overruns, latencies and computing times so far."""
+        core = self._execution.report()
+        return RunReport(**{name: getattr(core, name) for name in RunReport.__dataclass_fields__})
+
+    def _come_to_rest(self) -> None:
+        """Stop and wait; a fault meanwhile is the drive's, which is then at rest, too."""
+        self._execution.stop()
+        while not self.ended:
+            self._execution.wait(_SLICE)

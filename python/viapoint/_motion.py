@@ -1,0 +1,131 @@
+"""A planned motion: finished, immutable and proven."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING
+
+from . import _core
+from ._arguments import ArrayLike, Vector, number, numbers_of
+from ._report import Report
+from ._robot import Robot
+from ._samples import Samples
+
+if TYPE_CHECKING:
+    from ._program import Program
+
+CYCLE = 0.002
+"""The controller's cycle [s]."""
+
+
+class Motion:
+    """What `Program.plan` returns. Threads: any, at once.
+
+    Attributes
+    ----------
+    program : Program
+        What was planned.
+    robot : Robot
+        The arm that moves.
+    report : Report
+        Warnings; for timed programs also the limits they break.
+    """
+
+    def __init__(self, core: _core.PlannedMotion, program: Program, report: Report) -> None:
+        self._core = core
+        self.program = program
+        self.report = report
+
+    def __repr__(self) -> str:
+        """Name and duration."""
+        return f"<Motion {self.program.name!r}, {self.duration:.3f} s>"
+
+    @property
+    def robot(self) -> Robot:
+        """The arm that moves."""
+        return self.program.robot
+
+    @property
+    def duration(self) -> float:
+        """From the first setpoint to the last [s]."""
+        return self._core.duration
+
+    @property
+    def pieces(self) -> int:
+        """Number of polynomial pieces that the controller evaluates."""
+        return self._core.pieces
+
+    @property
+    def certificate(self) -> _core.Certificate:
+        """Proven bounds: worst velocity, acceleration and jerk a joint, path deviation, …."""
+        return self._core.certificate
+
+    @property
+    def corners(self) -> list[_core.Corner]:
+        """What became of each move's zone."""
+        return self._core.corners
+
+    @property
+    def start(self) -> Vector:
+        """Joints where the motion begins, (n,) [rad or m]."""
+        return self.at([0.0]).q[0]
+
+    @property
+    def end(self) -> Vector:
+        """Joints where the motion ends, (n,) [rad or m]."""
+        return self.at([self.duration]).q[0]
+
+    def sample(self, dt: float = CYCLE) -> Samples:
+        """States at 0, dt, 2 dt, … and at the exact end (the last step may be shorter).
+
+        Parameters
+        ----------
+        dt : float
+            Step [s], above 0.
+
+        Raises
+        ------
+        BadArgumentError
+            dt is not positive and finite, or asks for more than 1e8 samples.
+        """
+        return self._samples(self._core.sample(number(dt, "dt", "s", above=0.0)))
+
+    def at(self, times: ArrayLike) -> Samples:
+        """States at the given instants; before the start and after the end, the ends.
+
+        Parameters
+        ----------
+        times : array_like, (k,)
+            Ascending [s].
+
+        Raises
+        ------
+        BadArgumentError
+            Not ascending, or not finite.
+        """
+        return self._samples(self._core.sample_at(numbers_of(times, "times").reshape(-1)))
+
+    def _samples(self, columns: dict[str, Vector]) -> Samples:
+        return Samples(**columns, robot=self.robot)  # type: ignore[arg-type]
+
+    def plot(self, path: str | os.PathLike[str], what: str = "joints") -> None:
+        """Draw the motion into a picture file (.png, .svg or .pdf).
+
+        Parameters
+        ----------
+        path : str or path
+            The file to write.
+        what : {"joints", "tool", "path"}
+            Joint angles, velocities, accelerations and jerks against their limits; x, y, z of the
+            tool with velocity and acceleration; or the tool's path in 3-D with approach vectors.
+
+        Raises
+        ------
+        BadArgumentError
+            Another word for `what`.
+        UncontrolledError
+            "tool" or "path" of a robot without kinematics.
+        """
+        from ._plots import save_plot
+
+        save_plot(self, path, what)

@@ -1,0 +1,239 @@
+"""Teach and playback: named points in a file, written so that none is ever lost."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+
+from . import _core
+from ._arguments import ArrayLike, Vector, choice, vector
+from ._program import Program
+from ._robot import Robot, load_robot
+from ._zone import ZoneLike
+from .errors import BadArgumentError, BadProgramError, EmptyProgramError, FileError
+
+FORMAT = "viapoint points"
+VERSION = 1
+
+
+class PointList:
+    """Taught points in the order they were taught, kept in a JSON file.
+
+    Every `record` is on disk when it returns: the file is written aside and renamed, so that a
+    crash leaves the old list or the new one. A file that is damaged raises and is left alone.
+
+    Parameters
+    ----------
+    path : str or path
+        The file. It is made by the first `record`.
+    robot : Robot, optional
+        The arm. May be left out where the file exists: it names its robot.
+
+    Raises
+    ------
+    FileError
+        No such file, and no robot given to begin one.
+    BadProgramError
+        The file is damaged, or holds points of another robot.
+    """
+
+    def __init__(self, path: str | os.PathLike[str], robot: Robot | None = None) -> None:
+        self.path = Path(path)
+        if robot is None and not self.path.exists():
+            raise FileError(
+                f"There is no point file {self.path}.",
+                file=str(self.path),
+                ways_out=["To begin a new one, give its robot: PointList(path, robot)."],
+            )
+        self._points: dict[str, Vector] = {}
+        if self.path.exists():
+            name, self._points = _read(self.path, robot)
+            self.robot = load_robot(name) if robot is None else robot
+        elif robot is not None:
+            self.robot = robot
+
+    def __repr__(self) -> str:
+        """File and number of points."""
+        return f"<PointList {str(self.path)!r}, {len(self)} points of {self.robot.name}>"
+
+    def __len__(self) -> int:
+        """Count the points."""
+        return len(self._points)
+
+    def __iter__(self) -> Iterator[str]:
+        """Go through the names in the order of teaching."""
+        return iter(self._points)
+
+    def __contains__(self, name: object) -> bool:
+        """Tell whether there is a point of this name."""
+        return name in self._points
+
+    def __getitem__(self, name: str) -> Vector:
+        """Joints of a point, (n,) [rad or m]."""
+        if name not in self._points:
+            known = ", ".join(self._points) or "none"
+            raise BadArgumentError(f'{self.path} has no point "{name}"; there are: {known}.')
+        return self._points[name].copy()
+
+    def record(self, name: str, q: ArrayLike) -> None:
+        """Add or replace a point, on disk at once.
+
+        Parameters
+        ----------
+        name : str
+            What to call it; a known name keeps its place in the order.
+        q : array_like, (n,)
+            Joints [rad or m], within the robot's limits.
+
+        Raises
+        ------
+        BadArgumentError
+            An empty name, or joints that do not fit.
+        FileError, BadProgramError
+            The file cannot be written, or what stands there is damaged (and is left alone).
+        """
+        if not isinstance(name, str) or not name.strip():
+            raise BadArgumentError(f"name is {name!r}; a point needs a name.")
+        joints = vector(q, "q", self.robot.joints)
+        # Another process may have taught meanwhile: what is on disk counts.
+        points = _read(self.path, self.robot)[1] if self.path.exists() else dict(self._points)
+        points[name] = joints
+        self._write(points)
+
+    def remove(self, name: str) -> None:
+        """Delete a point, on disk at once.
+
+        Raises
+        ------
+        BadArgumentError
+            No such point.
+        FileError, BadProgramError
+            As for `record`.
+        """
+        self[name]
+        points = _read(self.path, self.robot)[1]
+        points.pop(name, None)
+        self._write(points)
+
+    def program(
+        self,
+        *,
+        kind: Literal["ptp", "lin"] = "ptp",
+        start: ArrayLike | None = None,
+        speed: float | None = None,
+        acceleration: float | None = None,
+        scale: float | None = None,
+        zone: ZoneLike = "fine",
+        name: str | None = None,
+    ) -> Program:
+        """Return a program that plays the list back.
+
+        Parameters
+        ----------
+        kind : {"ptp", "lin"}
+            Straight in joint space, or straight lines of the tool.
+        start : array_like, (n,), optional
+            Where the arm stands [rad or m]; it then moves straight in joint space to the first
+            point. Default: the first point itself.
+        speed, acceleration : float, optional
+            At the tool [m/s], [m/s²], for ``"lin"``.
+        scale : float, optional
+            Share of all joint limits, in (0, 1].
+        zone : Zone, float or "fine"
+            Zone at each point between the first and the last.
+        name : str, optional
+            The program's name. Default: the file's.
+
+        Raises
+        ------
+        EmptyProgramError
+            Fewer than two points to move between.
+        BadArgumentError
+            By the argument's name.
+        """
+        way = choice(kind, "kind", ("ptp", "lin"))
+        points = list(self._points.values())
+        if len(points) < (2 if start is None else 1):
+            raise EmptyProgramError(
+                f"{self.path} holds {len(points)} points; playing back needs at least two, or one "
+                "and a start.",
+                file=str(self.path),
+                ways_out=["Teach more points: arm.teach(name, points)."],
+            )
+        program = Program(
+            self.robot,
+            start=points[0] if start is None else start,
+            speed=speed,
+            acceleration=acceleration,
+            scale=scale,
+            zone=zone,
+            name=self.path.stem if name is None else name,
+        )
+        if start is not None and not np.array_equal(program.start, points[0]):
+            program.movej(points[0], zone="fine")
+        for q in points[1:]:
+            if way == "ptp":
+                program.movej(q)
+            else:
+                program.movel(q)
+        return program
+
+    def _write(self, points: dict[str, Vector]) -> None:
+        document = {
+            "format": FORMAT,
+            "version": VERSION,
+            "robot": self.robot.name,
+            "points": [{"name": name, "q": q.tolist()} for name, q in points.items()],
+        }
+        text = json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+        _core.write_file_atomically(str(self.path), text)
+        self._points = points
+
+
+def _read(path: Path, robot: Robot | None) -> tuple[str, dict[str, Vector]]:
+    """Read and check a point file: the robot's name, and the points."""
+    text = _core.read_file(str(path))
+    try:
+        document = json.loads(text)
+    except json.JSONDecodeError as error:
+        raise _damaged(path, f"it is no JSON: {error.msg}", error.lineno) from None
+    if not isinstance(document, dict) or document.get("format") != FORMAT:
+        raise _damaged(path, f'the key "format" must be "{FORMAT}"')
+    if document.get("version") != VERSION:
+        raise _damaged(path, f'the key "version" must be {VERSION}')
+    name = document.get("robot")
+    if not isinstance(name, str):
+        raise _damaged(path, 'the key "robot" must be a name')
+    if robot is not None and robot.name != name:
+        raise _damaged(path, f'it holds points of the robot "{name}", not of "{robot.name}"')
+    entries = document.get("points")
+    if not isinstance(entries, list):
+        raise _damaged(path, 'the key "points" must be a list')
+    joints = robot.joints if robot is not None else None
+    points: dict[str, Vector] = {}
+    for i, entry in enumerate(entries):
+        if not isinstance(entry, dict) or not isinstance(entry.get("name"), str):
+            raise _damaged(path, f'points[{i}] must have a "name" and "q"')
+        if entry["name"] in points:
+            raise _damaged(path, f'points[{i}] has the name "{entry["name"]}" a second time')
+        try:
+            size = len(entry["q"]) if joints is None else joints
+            points[entry["name"]] = vector(entry["q"], f"points[{i}].q", size)
+        except (BadArgumentError, KeyError, TypeError) as error:
+            reason = error.message if isinstance(error, BadArgumentError) else '"q" is missing'
+            raise _damaged(path, f"points[{i}]: {reason}") from None
+    return name, points
+
+
+def _damaged(path: Path, reason: str, line: int | None = None) -> BadProgramError:
+    return BadProgramError(
+        f"The point file cannot be read: {reason}.",
+        file=str(path),
+        line=line,
+        ways_out=["Mend the file by hand or move it away; it was left as it is."],
+    )

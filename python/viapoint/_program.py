@@ -1,0 +1,373 @@
+"""Motion programs: what the arm shall do, in order."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Literal
+
+from . import _core, _session
+from ._arguments import (
+    NOTEWORTHY_CORRECTION,
+    ArrayLike,
+    Vector,
+    choice,
+    integer,
+    number,
+    numbers_of,
+    pose,
+    vector,
+)
+from ._motion import Motion
+from ._report import Report
+from ._robot import Robot, load_robot
+from ._source import caller
+from ._zone import ZoneLike, zone_of
+from .errors import BadArgumentError, BadProgramError
+
+OUTPUTS = 64
+
+
+class Program:
+    """A list of moves, waits and outputs for one robot.
+
+    The builders return the program itself, so that they can be chained. They check types, shapes
+    and finiteness at once; what needs kinematics, limits or neighbours is found by `check` and
+    raised by `plan`.
+
+    Parameters
+    ----------
+    robot : Robot
+        The arm to move.
+    start : array_like, (n,)
+        Joints where the program begins [rad or m].
+    speed, acceleration : float, optional
+        Default for Cartesian moves, at the tool [m/s], [m/s²]. Default: the limits only.
+    scale : float, optional
+        Default share of all joint limits, in (0, 1].
+    zone : Zone, float or "fine"
+        Default zone of every move; the last move of a program always stops.
+    name : str
+        For people and for the names of files.
+    position_tolerance, angle_tolerance : float
+        Straight lines stay proven within this [m], [rad].
+
+    Raises
+    ------
+    BadArgumentError
+        By the argument's name.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        *,
+        start: ArrayLike,
+        speed: float | None = None,
+        acceleration: float | None = None,
+        scale: float | None = None,
+        zone: ZoneLike = "fine",
+        name: str = "program",
+        position_tolerance: float = _core.POSITION_TOLERANCE,
+        angle_tolerance: float = _core.ANGLE_TOLERANCE,
+    ) -> None:
+        if not isinstance(robot, Robot):
+            raise BadArgumentError(
+                f"robot is {robot!r}; it must be a Robot.", ways_out=["Use load_robot(name)."]
+            )
+        self.robot = robot
+        self.name = name
+        self._defaults = (speed, acceleration, scale, zone_of(zone))
+        self._options()  # refuses a bad default here, where it was given
+        self._tolerances = (
+            number(position_tolerance, "position_tolerance", "m", above=0.0),
+            number(angle_tolerance, "angle_tolerance", "rad", above=0.0),
+        )
+        self._core = _core.MotionProgram(robot._core, vector(start, "start", robot.joints))
+
+    def __repr__(self) -> str:
+        """Name, robot and number of steps."""
+        return f"<Program {self.name!r} for {self.robot.name}, {len(self)} steps>"
+
+    def __len__(self) -> int:
+        """Count the steps."""
+        return len(self._core)
+
+    @property
+    def start(self) -> Vector:
+        """Joints where the program begins, (n,) [rad or m]."""
+        return self._core.start
+
+    def movej(
+        self,
+        target: ArrayLike | None = None,
+        *,
+        position: ArrayLike | None = None,
+        scale: float | None = None,
+        zone: ZoneLike | None = None,
+    ) -> Program:
+        """Move straight in joint space (PTP).
+
+        Parameters
+        ----------
+        target : array_like, (n,) or (4, 4)
+            Joints [rad or m], or pose_base_tool [m], taken on the branch nearest to where the move
+            begins.
+        position : array_like, (3,), optional
+            Instead of `target`: the tool's position [m], any orientation.
+        scale : float, optional
+            Share of all joint limits, in (0, 1].
+        zone : Zone, float or "fine", optional
+            How near the move must pass its point.
+
+        Raises
+        ------
+        BadArgumentError, NotARotationError
+            By the argument's name.
+        """
+        options = self._options(scale=scale, zone=zone)
+        file, line = caller()
+        self._core.add_movej(self._target(target, position), options, file, line)
+        return self
+
+    def movel(
+        self,
+        target: ArrayLike | None = None,
+        *,
+        position: ArrayLike | None = None,
+        orientation: Literal["least", "wrist", "fixed"] = "least",
+        speed: float | None = None,
+        acceleration: float | None = None,
+        scale: float | None = None,
+        zone: ZoneLike | None = None,
+    ) -> Program:
+        """Move the tool's point in a straight line (LIN).
+
+        Parameters
+        ----------
+        target : array_like, (4, 4) or (n,)
+            pose_base_tool [m], or the joints [rad or m] of that pose.
+        position : array_like, (3,), optional
+            Instead of `target`: the tool's position [m], with its orientation left free.
+        orientation : {"least", "wrist", "fixed"}
+            The least rotation between the two poses; the wrist joints interpolated, with the
+            position straight; or the orientation as it is at the start.
+        speed, acceleration : float, optional
+            At the tool [m/s], [m/s²].
+        scale : float, optional
+            Share of all joint limits, in (0, 1].
+        zone : Zone, float or "fine", optional
+            How near the move must pass its point.
+
+        Raises
+        ------
+        BadArgumentError, NotARotationError
+            By the argument's name.
+        """
+        options = self._options(speed=speed, acceleration=acceleration, scale=scale, zone=zone)
+        way = choice(orientation, "orientation", ("least", "wrist", "fixed"))
+        file, line = caller()
+        self._core.add_movel(self._target(target, position), way, options, file, line)
+        return self
+
+    def wait(self, seconds: float) -> Program:
+        """Stay at rest for `seconds` [s], 0 or longer.
+
+        Raises
+        ------
+        BadArgumentError
+            Negative or not finite.
+        """
+        self._core.add_wait(number(seconds, "seconds", "s", least=0.0), *caller())
+        return self
+
+    def set_do(self, index: int, value: bool) -> Program:
+        """Set a digital output where the path has got to.
+
+        Parameters
+        ----------
+        index : int
+            Output, 0 to 63.
+        value : bool
+            On or off.
+
+        Raises
+        ------
+        BadArgumentError
+            Another index, or a value that is not a bool.
+        """
+        output = integer(index, "index", 0, OUTPUTS - 1)
+        if not isinstance(value, bool):
+            raise BadArgumentError(f"value is {value!r}; an output is True or False.")
+        self._core.add_set_do(output, value, *caller())
+        return self
+
+    def timed(
+        self,
+        points: Sequence[tuple[ArrayLike, float]],
+        *,
+        t_acc: float = 0.2,
+        space: Literal["joint", "cartesian"] = "joint",
+    ) -> Program:
+        """Pass points at fixed times with quartic transitions: the classic form, for study.
+
+        It starts and ends at full speed, so no drive takes it; it always plans, and the limits it
+        breaks are in the report. It stands alone in its program.
+
+        Parameters
+        ----------
+        points : sequence of (array_like, float)
+            Each a pose (4, 4) [m] or joints (n,) [rad or m], and the time from the point before
+            [s]; 0 for the first.
+        t_acc : float
+            The transition about an inner point lasts from -t_acc to t_acc [s].
+        space : {"joint", "cartesian"}
+            Joints linear in time, or the drive transform between the poses.
+
+        Raises
+        ------
+        BadArgumentError, NotARotationError
+            By the argument's name.
+        """
+        file, line = caller()
+        timed = []
+        for i, point in enumerate(points):
+            try:
+                target, seconds = point
+            except (TypeError, ValueError):
+                raise BadArgumentError(
+                    f"points[{i}] is {point!r}; it must be (pose or joints, seconds)."
+                ) from None
+            timed.append(
+                (
+                    self._target(target, None, f"points[{i}][0]"),
+                    number(seconds, f"points[{i}][1]", "s", least=0.0),
+                )
+            )
+        self._core.add_timed(
+            timed,
+            number(t_acc, "t_acc", "s", above=0.0),
+            choice(space, "space", ("joint", "cartesian")),
+            file,
+            line,
+        )
+        return self
+
+    def check(self) -> Report:
+        """Look at every step without moving anything.
+
+        Returns
+        -------
+        Report
+            Every problem at once, each with the script's line, and what would make it right.
+        """
+        return Report(_core.check(self.robot._core, self._core, *self._tolerances))
+
+    def plan(self) -> Motion:
+        """Plan and prove the motion.
+
+        Raises
+        ------
+        MotionError
+            The first error of the report.
+        """
+        core = _core.plan(self.robot._core, self._core, *self._tolerances)
+        motion = Motion(core, self, Report(core.problems))
+        _session.current().planned(motion)
+        return motion
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the program as JSON, for `load` and for ``viapoint-controller``.
+
+        The file is written aside and renamed: a reader sees the old file or the new one.
+
+        Raises
+        ------
+        FileError
+            With the path and the system's reason.
+        """
+        self._core.save(os.fspath(path))
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str], robot: Robot | None = None) -> Program:
+        """Read a program that `save` wrote.
+
+        Parameters
+        ----------
+        path : str or path
+            The file.
+        robot : Robot, optional
+            The arm; by default the built-in one the file names.
+
+        Raises
+        ------
+        FileError
+            The file cannot be read.
+        BadProgramError
+            The file is damaged, or was written for another robot.
+        """
+        name = os.fspath(path)
+        core = _core.load_program(name)
+        arm = load_robot(core.robot) if robot is None else robot
+        if core.robot_fingerprint and core.robot_fingerprint != arm.fingerprint:
+            raise BadProgramError(
+                f'The program was written for the robot "{core.robot}" with fingerprint '
+                f'{core.robot_fingerprint}; "{arm.name}" has {arm.fingerprint}.',
+                file=name,
+                ways_out=["Pass the robot it was written for: Program.load(path, robot)."],
+            )
+        program = cls(arm, start=core.start, name=Path(name).stem)
+        program._core = core
+        return program
+
+    def _options(
+        self,
+        *,
+        speed: float | None = None,
+        acceleration: float | None = None,
+        scale: float | None = None,
+        zone: ZoneLike | None = None,
+    ) -> _core.MoveOptions:
+        base_speed, base_acceleration, base_scale, base_zone = self._defaults
+        zone = base_zone if zone is None else zone_of(zone)
+        return _core.MoveOptions(
+            speed=_positive(base_speed if speed is None else speed, "speed", "m/s"),
+            acceleration=_positive(
+                base_acceleration if acceleration is None else acceleration, "acceleration", "m/s²"
+            ),
+            scale=_positive(base_scale if scale is None else scale, "scale", "", most=1.0),
+            zone=zone.kind,
+            size=zone.size,
+        )
+
+    def _target(
+        self,
+        target: ArrayLike | None,
+        position: ArrayLike | None,
+        name: str = "target",
+    ) -> _core.Target:
+        if (target is None) == (position is None):
+            given = "Neither" if target is None else "Both"
+            raise BadArgumentError(f"{given} {name} and position given; give one of them.")
+        if position is not None:
+            return _core.Target.position(vector(position, "position", 3, "x, y, z"))
+        array = numbers_of(target, name)
+        if array.ndim == 2:
+            matrix, correction = pose(array, name)
+            # The planner reports the correction as a warning, with the script's line.
+            return _core.Target.pose(
+                matrix, correction if correction > NOTEWORTHY_CORRECTION else 0.0
+            )
+        if array.shape != (self.robot.joints,):
+            raise BadArgumentError(
+                f"{name} has the shape {array.shape}; it must be ({self.robot.joints},): joints, "
+                "or (4, 4): a pose."
+            )
+        return _core.Target.joints(array)
+
+
+def _positive(
+    value: float | None, name: str, unit: str, most: float = float("inf")
+) -> float | None:
+    return None if value is None else number(value, name, unit, above=0.0, most=most)

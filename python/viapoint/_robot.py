@@ -1,0 +1,334 @@
+"""Robots: what an arm is, where its tool is, and which joints bring it there."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from typing import cast
+
+import numpy as np
+
+from . import _core
+from ._arguments import NOTEWORTHY_CORRECTION, ArrayLike, Vector, numbers_of, pose, vector
+from .errors import BadArgumentError, PoseCorrectedWarning
+
+
+class Robot:
+    """An arm: chain, limits, forward and inverse kinematics. Immutable.
+
+    Made by `load_robot` and `joint_robot`. Angles are in radians, lengths in metres; poses are
+    ``pose_base_tool``, (4, 4). Threads: any, at once.
+    """
+
+    def __init__(self, core: _core.RobotModel) -> None:
+        self._core = core
+
+    def __repr__(self) -> str:
+        """Name and number of joints."""
+        return f"<Robot {self.name}, {self.joints} joints>"
+
+    @property
+    def name(self) -> str:
+        """Short name, e.g. ``"puma560"``."""
+        return self._core.name
+
+    @property
+    def title(self) -> str:
+        """One line for people."""
+        return self._core.title
+
+    @property
+    def joints(self) -> int:
+        """Number of joints, n."""
+        return self._core.joints
+
+    @property
+    def joint_names(self) -> list[str]:
+        """Names of the joints, n of them."""
+        return self._core.joint_names
+
+    @property
+    def prismatic(self) -> list[bool]:
+        """Which joints slide (metres) rather than turn (radians), n of them."""
+        return self._core.prismatic
+
+    @property
+    def sources(self) -> list[str]:
+        """Where the description's numbers come from."""
+        return self._core.sources
+
+    @property
+    def chosen(self) -> list[str]:
+        """The numbers that nobody publishes, and why these were chosen."""
+        return self._core.chosen
+
+    @property
+    def limits(self) -> _core.JointLimits:
+        """The joint limits: ``position_min``, ``position_max``, ``velocity``, … each (n,)."""
+        return self._core.limits
+
+    @property
+    def has_kinematics(self) -> bool:
+        """False for `joint_robot`: then every question about poses is refused."""
+        return self._core.has_kinematics
+
+    @property
+    def fingerprint(self) -> str:
+        """Hash of chain, limits and tool: two robots with the same one move alike."""
+        return self._core.fingerprint
+
+    @property
+    def ik_family(self) -> str:
+        """Which inverse-kinematics solver serves this arm, and why."""
+        return self._core.ik_family
+
+    def fk(self, q: ArrayLike) -> Vector:
+        """Pose of the tool in the base frame.
+
+        Parameters
+        ----------
+        q : array_like, (n,) or (k, n)
+            Joints [rad or m].
+
+        Returns
+        -------
+        ndarray, (4, 4) or (k, 4, 4)
+            pose_base_tool [m].
+
+        Raises
+        ------
+        BadArgumentError
+            Another shape, or values that are not finite.
+        UncontrolledError
+            The robot has no kinematics.
+        """
+        joints = numbers_of(q, "q")
+        if joints.ndim == 2 and joints.shape[1] == self.joints:
+            return self._core.fk_batch(joints)
+        return self._core.fk(vector(joints, "q", self.joints))
+
+    def ik(
+        self,
+        pose: ArrayLike | None = None,
+        *,
+        position: ArrayLike | None = None,
+        near: ArrayLike | None = None,
+    ) -> Vector:
+        """Joints of the branch within the limits that is nearest to `near`.
+
+        Parameters
+        ----------
+        pose : array_like, (4, 4), optional
+            pose_base_tool [m]. Either this or `position`.
+        position : array_like, (3,), optional
+            Tool position in the base frame [m], where the orientation does not count.
+        near : array_like, (n,), optional
+            Reference joints [rad or m]; only a reference, may lie outside the limits. Default:
+            all zero.
+
+        Returns
+        -------
+        ndarray, (n,)
+            Joints [rad or m], always within the limits.
+
+        Raises
+        ------
+        NotARotationError, UnreachableError, OutsideLimitsError, UncontrolledError, BadArgumentError
+            Each says how far, which joint, or which coordinate.
+
+        Warns
+        -----
+        PoseCorrectedWarning
+            The pose was a rotation only up to rounding and was projected.
+        """
+        reference = np.zeros(self.joints) if near is None else vector(near, "near", self.joints)
+        if position is not None:
+            _only_one(pose)
+            point = vector(position, "position", 3, "x, y, z")
+            return self._core.ik_near_position(point, reference)
+        return self._core.ik_near(_checked(pose), reference)
+
+    def ik_all(self, pose: ArrayLike | None = None, *, position: ArrayLike | None = None) -> Vector:
+        """Every branch within the limits, and no other, nearest to zero first.
+
+        Parameters
+        ----------
+        pose : array_like, (4, 4), optional
+            pose_base_tool [m]. Either this or `position`.
+        position : array_like, (3,), optional
+            Tool position in the base frame [m], where the orientation does not count.
+
+        Returns
+        -------
+        ndarray, (k, n)
+            Joints [rad or m], one branch a row.
+
+        Raises
+        ------
+        NotARotationError, UnreachableError, OutsideLimitsError, UncontrolledError, BadArgumentError
+            As for `ik`.
+        """
+        if position is not None:
+            _only_one(pose)
+            return self._core.ik_all_position(vector(position, "position", 3, "x, y, z"))
+        return self._core.ik_all(_checked(pose))
+
+    def jacobian(self, q: ArrayLike) -> Vector:
+        """Geometric Jacobian at the tool point, base frame.
+
+        Parameters
+        ----------
+        q : array_like, (n,)
+            Joints [rad or m].
+
+        Returns
+        -------
+        ndarray, (6, n)
+            Rows 0-2 linear [m/s], rows 3-5 angular velocity [rad/s], per unit joint rate.
+        """
+        return self._core.jacobian(vector(q, "q", self.joints))
+
+    def manipulability(self, q: ArrayLike) -> float:
+        """Yoshikawa's measure sqrt(det(J Jᵀ)) at q (n,) (Yoshikawa 1985)."""
+        return self._core.manipulability(vector(q, "q", self.joints))
+
+    def singularity(self, q: ArrayLike) -> _core.Singularity:
+        """How near the arm at q (n,) is to losing a direction: name, distance, manipulability."""
+        return self._core.singularity(vector(q, "q", self.joints))
+
+    def with_limits(
+        self,
+        *,
+        position_min: ArrayLike | None = None,
+        position_max: ArrayLike | None = None,
+        velocity: ArrayLike | None = None,
+        acceleration: ArrayLike | None = None,
+        jerk: ArrayLike | None = None,
+    ) -> Robot:
+        """Return the same arm under other limits; what is not given stays.
+
+        Parameters
+        ----------
+        position_min, position_max, velocity, acceleration, jerk : array_like, optional
+            One number for all joints, or (n,) [rad or m, and per s, s², s³].
+
+        Raises
+        ------
+        BadLimitsError
+            Limits of zero, swapped or not finite, by joint.
+        """
+        old = self.limits
+        n = self.joints
+        return Robot(
+            self._core.with_limits(
+                _core.JointLimits(
+                    position_min=_each(position_min, "position_min", n, old.position_min),
+                    position_max=_each(position_max, "position_max", n, old.position_max),
+                    velocity=_each(velocity, "velocity", n, old.velocity),
+                    acceleration=_each(acceleration, "acceleration", n, old.acceleration),
+                    jerk=_each(jerk, "jerk", n, old.jerk),
+                    coupling=old.coupling,
+                    coupling_lower=old.coupling_lower,
+                    coupling_upper=old.coupling_upper,
+                )
+            )
+        )
+
+
+def load_robot(name_or_path: str | os.PathLike[str]) -> Robot:
+    """Load a robot.
+
+    Parameters
+    ----------
+    name_or_path : str or path
+        A built-in name (``"puma560"``; the command ``viapoint robots`` lists them), or a file that
+        ends in ``.yaml`` or ``.urdf``.
+
+    Raises
+    ------
+    BadRobotError
+        A description with an error: file, line or key, and what was expected.
+    FileError
+        No such file.
+    """
+    return Robot(_core.load_robot(os.fspath(name_or_path)))
+
+
+def joint_robot(
+    n: int,
+    *,
+    velocity: ArrayLike,
+    acceleration: ArrayLike,
+    jerk: ArrayLike,
+    position_min: ArrayLike | None = None,
+    position_max: ArrayLike | None = None,
+    coupling: ArrayLike | None = None,
+    lower: ArrayLike | None = None,
+    upper: ArrayLike | None = None,
+) -> Robot:
+    """Make `n` joints with limits and no kinematics, for joint moves only.
+
+    Parameters
+    ----------
+    n : int
+        Number of joints.
+    velocity, acceleration, jerk : array_like
+        One number for all joints, or (n,) [rad or m per s, s², s³].
+    position_min, position_max : array_like, optional
+        As above [rad or m]; none when left out.
+    coupling, lower, upper : array_like, optional
+        Coupled limits lower <= coupling @ q <= upper; (m, n), (m,), (m,).
+
+    Raises
+    ------
+    BadArgumentError, BadLimitsError
+        Sizes that differ, NaN, or limits that are not positive.
+    """
+    if isinstance(n, bool) or not isinstance(n, int) or not 1 <= n <= _core.MAX_JOINTS:
+        raise BadArgumentError(f"n is {n!r}; a robot has 1 to {_core.MAX_JOINTS} joints.")
+    matrix = np.zeros((0, n)) if coupling is None else numbers_of(coupling, "coupling")
+    if matrix.ndim != 2 or matrix.shape[1] != n:
+        raise BadArgumentError(f"coupling has the shape {matrix.shape}; it must be (m, {n}).")
+    rows = matrix.shape[0]
+    if rows and (lower is None or upper is None):
+        raise BadArgumentError("coupling needs lower and upper, one value a row of it.")
+    return Robot(
+        _core.joint_robot(
+            _core.JointLimits(
+                position_min=_each(position_min, "position_min", n, np.full(n, -np.inf)),
+                position_max=_each(position_max, "position_max", n, np.full(n, np.inf)),
+                velocity=_each(velocity, "velocity", n),
+                acceleration=_each(acceleration, "acceleration", n),
+                jerk=_each(jerk, "jerk", n),
+                coupling=matrix,
+                coupling_lower=vector([] if lower is None else lower, "lower", rows, "one a row"),
+                coupling_upper=vector([] if upper is None else upper, "upper", rows, "one a row"),
+            )
+        )
+    )
+
+
+def _each(value: ArrayLike | None, name: str, n: int, default: Vector | None = None) -> Vector:
+    if value is None:
+        return cast("Vector", default)
+    array = numbers_of(value, name)
+    return np.full(n, float(array)) if array.ndim == 0 else vector(array, name, n)
+
+
+def _checked(value: ArrayLike | None) -> Vector:
+    if value is None:
+        raise BadArgumentError("Neither pose nor position is given; give one of them.")
+    matrix, correction = pose(value, "pose")
+    if correction > NOTEWORTHY_CORRECTION:
+        warnings.warn(
+            f"The pose is a rotation only up to rounding; the nearest one is used, "
+            f"with elements changed by at most {correction:.3g}.",
+            PoseCorrectedWarning,
+            stacklevel=3,
+        )
+    return matrix
+
+
+def _only_one(value: ArrayLike | None) -> None:
+    if value is not None:
+        raise BadArgumentError("Both pose and position are given; give one of them.")

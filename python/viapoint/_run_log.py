@@ -1,0 +1,107 @@
+"""Every cycle of a run, as it was executed."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, field, fields
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from ._arguments import Vector
+from ._robot import Robot
+from ._samples import Samples
+
+
+@dataclass(frozen=True)
+class RunLog:
+    """The setpoints of a run, one row a cycle.
+
+    Attributes
+    ----------
+    cycle : ndarray of uint64, (k,)
+        From the start of the run.
+    stamp : ndarray of int64, (k,)
+        CLOCK_MONOTONIC at wake-up [ns]; virtual time in a simulated run.
+    latency, compute : ndarray of int64, (k,)
+        Wake-up after its due instant, and the tick's own computing time [ns].
+    nominal_time, rate : ndarray, (k,)
+        How far along the motion [s], and its rate of advance.
+    move : ndarray of int32, (k,)
+        The program's step under way.
+    state : ndarray of uint8, (k,)
+        Index into ``RunLog.STATES``.
+    outputs : ndarray of uint64, (k,)
+        Digital outputs, bit i is output i.
+    q, qd, qdd, qddd : ndarray, (k, n)
+        Setpoints [rad or m, per s, s², s³ of real time].
+    measured : ndarray, (k, n)
+        What the drive reported [rad or m]; NaN where there was no drive.
+    period : float
+        The cycle [s].
+    robot : Robot
+        The arm that moved.
+    core : Log
+        The same records in C++.
+    """
+
+    cycle: npt.NDArray[np.uint64]
+    stamp: npt.NDArray[np.int64]
+    latency: npt.NDArray[np.int64]
+    compute: npt.NDArray[np.int64]
+    nominal_time: Vector
+    rate: Vector
+    move: npt.NDArray[np.int32]
+    state: npt.NDArray[np.uint8]
+    outputs: npt.NDArray[np.uint64]
+    q: Vector
+    qd: Vector
+    qdd: Vector
+    qddd: Vector
+    measured: Vector
+    period: float
+    robot: Robot = field(repr=False)
+    core: _core.Log = field(repr=False)
+
+    STATES = _core.RUN_STATES
+
+    def __len__(self) -> int:
+        """Count the cycles."""
+        return len(self.cycle)
+
+    @property
+    def samples(self) -> Samples:
+        """The setpoints as `Motion.sample` gives them, one a cycle."""
+        first = self.cycle[0] if len(self) else 0
+        return Samples(
+            t=(self.cycle - first).astype(np.float64) * self.period,
+            q=self.q,
+            qd=self.qd,
+            qdd=self.qdd,
+            qddd=self.qddd,
+            move=self.move,
+            robot=self.robot,
+        )
+
+    @classmethod
+    def of(cls, core: _core.Log, robot: Robot, period: float) -> RunLog:
+        """Take over what the controller kept."""
+        return cls(**core.columns(), robot=robot, period=period, core=core)
+
+    def save_npz(self, path: str | os.PathLike[str]) -> None:
+        """Write the arrays by their names into a numpy file."""
+        columns = {f.name: getattr(self, f.name) for f in fields(self) if f.repr}
+        np.savez_compressed(os.fspath(path), **columns)
+
+    def save_csv(self, path: str | os.PathLike[str]) -> None:
+        """Write one line a cycle, as ``viapoint-controller --log`` does.
+
+        Numbers read back to the last bit.
+
+        Raises
+        ------
+        FileError
+            With the path and the system's reason.
+        """
+        self.core.save_csv(os.fspath(path))

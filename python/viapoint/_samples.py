@@ -1,0 +1,66 @@
+"""A motion as arrays over time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+from ._arguments import Vector
+from ._robot import Robot
+
+
+@dataclass(frozen=True)
+class Samples:
+    """States of a motion, one a row.
+
+    Attributes
+    ----------
+    t : ndarray, (k,)
+        Time from the motion's start [s].
+    q, qd, qdd, qddd : ndarray, (k, n)
+        Joints and their derivatives [rad or m, per s, s², s³].
+    move : ndarray of int, (k,)
+        Index of the program's step under way.
+    robot : Robot
+        The arm that moves.
+    """
+
+    t: Vector
+    q: Vector
+    qd: Vector
+    qdd: Vector
+    qddd: Vector
+    move: npt.NDArray[np.int32]
+    robot: Robot = field(repr=False)
+
+    def __len__(self) -> int:
+        """Count the samples."""
+        return len(self.t)
+
+    @cached_property
+    def pose(self) -> Vector:
+        """pose_base_tool, (k, 4, 4) [m]; computed when first asked for.
+
+        Raises
+        ------
+        UncontrolledError
+            The robot has no kinematics.
+        """
+        return self.robot.fk(self.q)
+
+    @cached_property
+    def _rates(self) -> tuple[Vector, Vector]:
+        return self.robot._core.tool_rates(self.q, self.qd, self.qdd)
+
+    @property
+    def twist(self) -> Vector:
+        """Linear over angular velocity of the tool, base frame, (k, 6) [m/s, rad/s]."""
+        return self._rates[0]
+
+    @property
+    def twist_rate(self) -> Vector:
+        """Linear over angular acceleration of the tool, base frame, (k, 6) [m/s², rad/s²]."""
+        return self._rates[1]

@@ -1,0 +1,32 @@
+"""Factors to SI, so that people may write ``30 * deg`` and ``[10, 20] * mm``."""
+
+from collections.abc import Sequence
+from typing import overload
+
+import numpy as np
+import numpy.typing as npt
+
+Vector = npt.NDArray[np.float64]
+
+
+class Unit(float):
+    """A factor to SI; times a list or tuple it gives an array."""
+
+    @overload  # type: ignore[override]  # float's own takes numbers only
+    def __rmul__(self, other: float) -> float: ...
+    @overload
+    def __rmul__(self, other: Sequence[float] | Sequence[Sequence[float]]) -> Vector: ...
+    def __rmul__(
+        self, other: float | Sequence[float] | Sequence[Sequence[float]]
+    ) -> float | Vector:
+        """Scale a number, or every number of a list."""
+        if isinstance(other, (list, tuple)):
+            return np.asarray(other, dtype=np.float64) * float(self)
+        return super().__rmul__(other)  # type: ignore[operator, no-any-return]
+
+
+deg = Unit(np.pi / 180.0)
+"""One degree in radians: ``30 * deg``."""
+
+mm = Unit(1e-3)
+"""One millimetre in metres: ``20 * mm``."""

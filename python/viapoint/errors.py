@@ -1,0 +1,383 @@
+"""One family of errors: every refusal of viapoint is a `MotionError`.
+
+There is one class a code of the C++ core (``viapoint._core.error_codes()``). The message says what
+was wrong, the value and the allowed range; ``ways_out`` says what would make it right.
+
+The tree::
+
+    MotionError
+    ├── LimitError       JointLimitError, CouplingLimitError, VelocityLimitError, …
+    ├── PoseError        NotARotationError, UnreachableError, SingularError, …
+    ├── ProgramError     BadProgramError, EmptyProgramError, ZeroLengthError, …
+    ├── RunError         NotAtStartError, NotAtRestError, DriveFaultError, StoppedError, …
+    └── BadArgumentError, BadLimitsError, BadRobotError, FileError, InternalError
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import ClassVar
+
+from . import _core
+
+__all__ = [
+    "AccelerationLimitError",
+    "BadArgumentError",
+    "BadLimitsError",
+    "BadProgramError",
+    "BadRobotError",
+    "BranchChangeError",
+    "BusyError",
+    "CouplingLimitError",
+    "DiscontinuousError",
+    "DriveFaultError",
+    "EmptyProgramError",
+    "FileError",
+    "HalfTurnError",
+    "InternalError",
+    "JerkLimitError",
+    "JointLimitError",
+    "LimitError",
+    "MotionError",
+    "NotARotationError",
+    "NotAtRestError",
+    "NotAtStartError",
+    "OutsideLimitsError",
+    "PoseCorrectedError",
+    "PoseCorrectedWarning",
+    "PoseError",
+    "ProgramError",
+    "RunError",
+    "SingularError",
+    "StoppedError",
+    "UncontrolledError",
+    "UnreachableError",
+    "VelocityLimitError",
+    "ZeroLengthError",
+    "ZoneIsStopError",
+    "ZoneShrunkError",
+    "error_class",
+    "from_problem",
+]
+
+
+class MotionError(Exception):
+    """The root of all errors of viapoint.
+
+    Attributes
+    ----------
+    code : str
+        Stable lower-case name, e.g. ``"joint_limit"``.
+    message : str
+        What was wrong and the allowed range.
+    ways_out : tuple of str
+        What would make it right.
+    move : int or None
+        Index of the move in its program, from 0.
+    file : str
+        Source of the move, or the file that was read; empty where none.
+    line : int or None
+        Line in `file`, from 1.
+    joint : int or None
+        Joint, from 0.
+    time : float or None
+        [s] from the motion's start.
+    share : float or None
+        Share of the leg where it happens, 0 to 1.
+    value, limit : float or None
+        The offending value and what it was held against [SI, rad].
+    """
+
+    code: ClassVar[str] = "internal"
+
+    def __init__(
+        self,
+        message: str,
+        *,
+        ways_out: Sequence[str] = (),
+        move: int | None = None,
+        file: str = "",
+        line: int | None = None,
+        joint: int | None = None,
+        time: float | None = None,
+        share: float | None = None,
+        value: float | None = None,
+        limit: float | None = None,
+    ) -> None:
+        self.message = message
+        self.ways_out = tuple(ways_out)
+        self.move = move
+        self.file = file
+        self.line = line
+        self.joint = joint
+        self.time = time
+        self.share = share
+        self.value = value
+        self.limit = limit
+        super().__init__(self.problem.describe())
+
+    @property
+    def problem(self) -> _core.Problem:
+        """The error as data, as reports hold it."""
+        return _core.Problem(
+            self.code,
+            self.message,
+            ways_out=list(self.ways_out),
+            move=self.move,
+            file=self.file,
+            line=self.line,
+            joint=self.joint,
+            time=self.time,
+            share=self.share,
+            value=self.value,
+            limit=self.limit,
+        )
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """Pickle by fields, so that errors cross processes."""
+        fields = {name: value for name, value in vars(self).items() if name != "message"}
+        return (_rebuild, (type(self), self.message, fields))
+
+
+def _rebuild(cls: type[MotionError], message: str, fields: dict[str, object]) -> MotionError:
+    return cls(message, **fields)  # type: ignore[arg-type]
+
+
+class LimitError(MotionError):
+    """A joint or coupled limit is broken."""
+
+
+class PoseError(MotionError):
+    """A pose that the arm cannot take, or that is none."""
+
+
+class ProgramError(MotionError):
+    """A program that cannot be read or makes no motion."""
+
+
+class RunError(MotionError):
+    """A run that was refused, faulted or stopped."""
+
+
+class BadArgumentError(MotionError, ValueError):
+    """Wrong type, size or sign; NaN or infinity."""
+
+    code = "bad_argument"
+
+
+class BadLimitsError(MotionError, ValueError):
+    """Limits of zero, swapped, or missing."""
+
+    code = "bad_limits"
+
+
+class BadRobotError(MotionError):
+    """A robot description that cannot be read."""
+
+    code = "bad_robot"
+
+
+class FileError(MotionError, OSError):
+    """A file that cannot be read or written."""
+
+    code = "file"
+
+    def __str__(self) -> str:
+        """Say what and where; OSError would print its arguments."""
+        return self.problem.describe()
+
+
+class InternalError(MotionError):
+    """A defect of viapoint itself."""
+
+    code = "internal"
+
+
+class JointLimitError(LimitError):
+    """A joint leaves its position limits."""
+
+    code = "joint_limit"
+
+
+class CouplingLimitError(LimitError):
+    """A coupled limit is left."""
+
+    code = "coupling_limit"
+
+
+class VelocityLimitError(LimitError):
+    """A joint is too fast."""
+
+    code = "velocity_limit"
+
+
+class AccelerationLimitError(LimitError):
+    """A joint accelerates too much."""
+
+    code = "acceleration_limit"
+
+
+class JerkLimitError(LimitError):
+    """A joint's jerk is too large."""
+
+    code = "jerk_limit"
+
+
+class NotARotationError(PoseError, ValueError):
+    """A pose whose 3x3 block is no rotation."""
+
+    code = "not_a_rotation"
+
+
+class UnreachableError(PoseError):
+    """The pose is outside the arm's reach."""
+
+    code = "unreachable"
+
+
+class OutsideLimitsError(PoseError):
+    """Reachable, but on no branch within the joint limits."""
+
+    code = "outside_limits"
+
+
+class SingularError(PoseError):
+    """The arm is at or too near a singularity."""
+
+    code = "singular"
+
+
+class BranchChangeError(PoseError):
+    """Start and goal are reachable only on different branches."""
+
+    code = "branch_change"
+
+
+class UncontrolledError(PoseError):
+    """The arm has too few joints to hold every coordinate asked for."""
+
+    code = "uncontrolled"
+
+
+class HalfTurnError(PoseError):
+    """Two orientations half a turn apart: the least rotation has two ways."""
+
+    code = "half_turn"
+
+
+class PoseCorrectedError(PoseError):
+    """A pose within rounding of a rotation was projected (a warning in reports)."""
+
+    code = "pose_corrected"
+
+
+class BadProgramError(ProgramError):
+    """A program or point file that cannot be read."""
+
+    code = "bad_program"
+
+
+class EmptyProgramError(ProgramError):
+    """Nothing to do."""
+
+    code = "empty_program"
+
+
+class ZeroLengthError(ProgramError):
+    """A move that goes nowhere."""
+
+    code = "zero_length"
+
+
+class ZoneShrunkError(ProgramError):
+    """A zone larger than its legs allow (a warning in reports)."""
+
+    code = "zone_shrunk"
+
+
+class ZoneIsStopError(ProgramError):
+    """A corner where stopping is quicker, or a near reversal (a warning in reports)."""
+
+    code = "zone_is_stop"
+
+
+class NotAtStartError(RunError):
+    """The arm is not where the motion starts."""
+
+    code = "not_at_start"
+
+
+class NotAtRestError(RunError):
+    """The motion starts or ends at speed."""
+
+    code = "not_at_rest"
+
+
+class DiscontinuousError(RunError):
+    """Pieces of a motion that do not meet."""
+
+    code = "discontinuous"
+
+
+class DriveFaultError(RunError):
+    """The drive refused or failed."""
+
+    code = "drive_fault"
+
+
+class StoppedError(RunError):
+    """The run was stopped before its end."""
+
+    code = "stopped"
+
+
+class BusyError(RunError):
+    """A run is already under way."""
+
+    code = "busy"
+
+
+class PoseCorrectedWarning(UserWarning):
+    """A pose within rounding of a rotation was projected before its inverse was asked for."""
+
+
+def _leaves(root: type[MotionError]) -> list[type[MotionError]]:
+    found = [root] if "code" in vars(root) and root is not MotionError else []
+    for child in root.__subclasses__():
+        found += _leaves(child)
+    return found
+
+
+_BY_CODE: dict[str, type[MotionError]] = {cls.code: cls for cls in _leaves(MotionError)}
+
+
+def error_class(code: str) -> type[MotionError]:
+    """Class of an error code.
+
+    Parameters
+    ----------
+    code : str
+        One of ``viapoint._core.error_codes()``.
+
+    Raises
+    ------
+    KeyError
+        No such code.
+    """
+    return _BY_CODE[code]
+
+
+def from_problem(problem: _core.Problem) -> MotionError:
+    """Make the exception that stands for a problem; the C++ core raises through this."""
+    return error_class(problem.code)(
+        problem.message,
+        ways_out=problem.ways_out,
+        move=problem.move,
+        file=problem.file,
+        line=problem.line,
+        joint=problem.joint,
+        time=problem.time,
+        share=problem.share,
+        value=problem.value,
+        limit=problem.limit,
+    )
