@@ -28,9 +28,14 @@ function(viapoint_test name)
   add_executable(test_${name} ${sources})
   list(TRANSFORM arg_LINKS PREPEND viapoint::)
   target_include_directories(test_${name} PRIVATE "${PROJECT_SOURCE_DIR}/tests/cpp")
-  target_compile_definitions(test_${name} PRIVATE
-    VIAPOINT_TEST_DATA="${PROJECT_SOURCE_DIR}/tests/data"
-    VIAPOINT_TEST_ROBOTS="${PROJECT_SOURCE_DIR}/python/viapoint/robots")
+  # Paths of the checkout come from a file and not from -D, so that ccache serves one checkout's
+  # objects to another.
+  set(paths "${PROJECT_BINARY_DIR}/tests/checkout_paths.hpp")
+  file(CONFIGURE OUTPUT "${paths}" CONTENT [[
+#define VIAPOINT_TEST_DATA "@PROJECT_SOURCE_DIR@/tests/data"
+#define VIAPOINT_TEST_ROBOTS "@PROJECT_SOURCE_DIR@/python/viapoint/robots"
+]] @ONLY)
+  target_compile_options(test_${name} PRIVATE "SHELL:-include ${paths}")
   target_link_libraries(test_${name} PRIVATE
     ${arg_LINKS} ${arg_PRIVATE} viapoint_compiler GTest::gtest_main)
   gtest_discover_tests(test_${name} DISCOVERY_TIMEOUT 60)
