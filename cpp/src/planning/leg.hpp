@@ -1,0 +1,22 @@
+/// @file
+/// One move as geometry, before corners and time.
+#pragma once
+
+#include "viapoint/path/joint_path.hpp"
+#include "viapoint/program/motion_program.hpp"
+
+namespace viapoint::planning {
+
+/// The whole way of one move, from point to point.
+struct Leg {
+  int step = 0;       ///< in the program
+  JointVector start;  ///< (n,)
+  JointVector goal;   ///< (n,)
+  JointPath path;     ///< from start to goal; pieces carry scale, speed wishes and step
+  MoveOptions options;
+  bool cartesian = false;
+  double position_deviation = 0.0;  ///< proven, from the wanted curve [m]
+  double angle_deviation = 0.0;     ///< [rad]
+};
+
+}  // namespace viapoint::planning

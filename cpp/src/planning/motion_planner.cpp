@@ -1,0 +1,211 @@
+#include "viapoint/planning/motion_planner.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "planning/itinerary.hpp"
+#include "planning/section.hpp"
+#include "viapoint/planning/timed_plan.hpp"
+
+namespace viapoint {
+namespace {
+
+using planning::Dwell;
+using planning::Item;
+using planning::Itinerary;
+using planning::Leg;
+using planning::Output;
+using planning::Section;
+
+/// How long the arm rests after its last move when outputs are still to change [s].
+constexpr double kLastOutputs = 0.002;
+
+TrajectoryPiece rest_at(const JointVector& q, double seconds, int step) {
+  TrajectoryPiece piece;
+  piece.duration = seconds;
+  piece.joints = static_cast<int>(q.size());
+  piece.move = step;
+  for (int i = 0; i < q.size(); ++i) piece.path[0][static_cast<size_t>(i)] = q[i];
+  piece.timing[1] = 1.0;
+  return piece;
+}
+
+/// Puts each change of output on the first piece of a later step: in the middle of the corner
+/// where the point is passed, at the end of the stop where the arm rests there.
+void attach_outputs(std::vector<TrajectoryPiece>& pieces, const std::vector<Output>& outputs,
+                    const JointVector& end) {
+  size_t next = 0;
+  for (TrajectoryPiece& piece : pieces) {
+    while (next < outputs.size() && outputs[next].step < piece.move) {
+      piece.output[static_cast<size_t>(piece.outputs++)] = outputs[next++].change;
+    }
+  }
+  if (next == outputs.size()) return;
+  TrajectoryPiece last = rest_at(end, kLastOutputs, outputs.back().step);
+  while (next < outputs.size()) {
+    last.output[static_cast<size_t>(last.outputs++)] = outputs[next++].change;
+  }
+  pieces.push_back(last);
+}
+
+Problem warning_of(const CornerOutcome& corner) {
+  Problem problem;
+  problem.severity = Severity::kWarning;
+  problem.code = corner.stopped ? ErrorCode::kZoneIsStop : ErrorCode::kZoneShrunk;
+  problem.value = corner.used;
+  problem.limit = corner.asked.size;
+  problem.message = corner.stopped ? "the zone became a stop: " : "the zone was shrunk: ";
+  problem.message += corner.reason;
+  return problem;
+}
+
+/// Smallest manipulability at the pieces' ends and middles.
+double least_manipulability(const RobotModel& robot, const std::vector<TrajectoryPiece>& pieces) {
+  if (!robot.has_kinematics()) return 0.0;
+  double least = std::numeric_limits<double>::infinity();
+  for (const TrajectoryPiece& piece : pieces) {
+    for (const double share : {0.0, 0.5, 1.0}) {
+      least = std::min(least, robot.manipulability(piece.at(share * piece.duration).q));
+    }
+  }
+  return least;
+}
+
+class Composer {
+ public:
+  Composer(const RobotModel& robot, const MotionProgram& program, const Itinerary& itinerary)
+      : robot_(robot), program_(program), itinerary_(itinerary) {}
+
+  PlannedMotion compose() {
+    JointVector at = program_.start;
+    for (const Item& item : itinerary_.items) {
+      if (const auto* leg = std::get_if<Leg>(&item)) {
+        legs_.push_back(*leg);
+        at = leg->goal;
+      } else if (const auto* dwell = std::get_if<Dwell>(&item)) {
+        flush_legs();
+        if (dwell->seconds > 0.0) pieces_.push_back(rest_at(at, dwell->seconds, dwell->step));
+      } else {
+        outputs_.push_back(std::get<Output>(item));
+      }
+    }
+    flush_legs();
+    attach_outputs(pieces_, outputs_, at);
+    return finish();
+  }
+
+ private:
+  void flush_legs() {
+    if (legs_.empty()) return;
+    for (Section& section : planning::build_sections(robot_, legs_)) {
+      pieces_.insert(pieces_.end(), section.pieces.begin(), section.pieces.end());
+      motion_.corners.insert(motion_.corners.end(), section.corners.begin(), section.corners.end());
+    }
+    for (const Leg& leg : legs_) {
+      position_deviation_ = std::max(position_deviation_, leg.position_deviation);
+      angle_deviation_ = std::max(angle_deviation_, leg.angle_deviation);
+    }
+    legs_.clear();
+  }
+
+  PlannedMotion finish() {
+    motion_.report = itinerary_.report;
+    for (const CornerOutcome& corner : motion_.corners) {
+      if (corner.reason.empty()) continue;
+      Problem problem = warning_of(corner);
+      planning::locate(problem, program_, corner.move);
+      motion_.report.problems.push_back(std::move(problem));
+    }
+    if (pieces_.empty()) return std::move(motion_);  // waits of no length only
+    const double manipulability = least_manipulability(robot_, pieces_);
+    motion_.trajectory = Trajectory(std::move(pieces_), robot_.limits());
+    Certificate& certificate = motion_.trajectory.certificate();
+    certificate.path_deviation = position_deviation_;
+    certificate.angle_deviation = angle_deviation_;
+    certificate.manipulability = manipulability;
+    for (const CornerOutcome& corner : motion_.corners) {
+      certificate.zone_deviation = std::max(certificate.zone_deviation, corner.cut);
+    }
+    for (Problem problem : certificate.problems) {
+      planning::locate(problem, program_, problem.move.value_or(-1));
+      motion_.report.problems.push_back(std::move(problem));
+    }
+    return std::move(motion_);
+  }
+
+  const RobotModel& robot_;
+  const MotionProgram& program_;
+  const Itinerary& itinerary_;
+  PlannedMotion motion_;
+  std::vector<Leg> legs_;  ///< since the last stop that the program asks for
+  std::vector<TrajectoryPiece> pieces_;
+  std::vector<Output> outputs_;
+  double position_deviation_ = 0.0;
+  double angle_deviation_ = 0.0;
+};
+
+const TimedMove* timed_alone(const MotionProgram& program) {
+  return program.steps.size() == 1 ? std::get_if<TimedMove>(&program.steps.front().what) : nullptr;
+}
+
+/// Everything but raising: the motion is empty where the report has errors.
+PlannedMotion draft(const RobotModel& robot, const PlannerOptions& options,
+                    const MotionProgram& program) {
+  const Itinerary itinerary = planning::make_itinerary(robot, options, program);
+  if (!itinerary.report.ok()) {
+    PlannedMotion motion;
+    motion.report = itinerary.report;
+    return motion;
+  }
+  return Composer(robot, program, itinerary).compose();
+}
+
+}  // namespace
+
+bool Report::ok() const {
+  return std::none_of(problems.begin(), problems.end(),
+                      [](const Problem& problem) { return problem.severity == Severity::kError; });
+}
+
+std::string Report::describe() const {
+  if (problems.empty()) return "no problems";
+  std::string text;
+  for (const Problem& problem : problems) {
+    text += problem.severity == Severity::kError ? "error: " : "warning: ";
+    text += problem.describe() + "\n";
+  }
+  text.pop_back();
+  return text;
+}
+
+MotionPlanner::MotionPlanner(RobotPtr robot, PlannerOptions options)
+    : robot_(std::move(robot)), options_(options) {}
+
+Report MotionPlanner::check(const MotionProgram& program) const {
+  try {
+    if (const TimedMove* timed = timed_alone(program)) {
+      return plan_timed(*robot_, program, *timed, 0).report;
+    }
+    return draft(*robot_, options_, program).report;
+  } catch (const MotionError& error) {
+    Report report;
+    report.problems.push_back(error.problem());
+    return report;
+  }
+}
+
+PlannedMotion MotionPlanner::plan(const MotionProgram& program) const {
+  const TimedMove* timed = timed_alone(program);
+  PlannedMotion motion = timed != nullptr ? plan_timed(*robot_, program, *timed, 0)
+                                          : draft(*robot_, options_, program);
+  // A timed motion is for study: broken limits stay in its report, and only a drive refuses them.
+  if (timed != nullptr && !motion.trajectory.pieces().empty()) return motion;
+  for (const Problem& problem : motion.report.problems) {
+    if (problem.severity == Severity::kError) throw MotionError(problem);
+  }
+  return motion;
+}
+
+}  // namespace viapoint
