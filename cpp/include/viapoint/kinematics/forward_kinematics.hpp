@@ -44,7 +44,8 @@ class ForwardKinematics {
   [[nodiscard]] Pose pose(const JointVector& q) const;
   /// Geometric Jacobian at the tool point, base frame.
   [[nodiscard]] Jacobian jacobian(const ChainFrames& frames) const;
-  /// Time derivative of the geometric Jacobian for joint rates qd (Hourtash 2005 for the structure).
+  /// Time derivative of the geometric Jacobian for joint rates qd (Hourtash 2005 for the
+  /// structure).
   [[nodiscard]] Jacobian jacobian_rate(const ChainFrames& frames, const JointVector& qd) const;
   /// An upper bound over *all* q of the distance from joint i's axis to the tool point [m]:
   /// R_max(i) of the deviation bounds. Prismatic travel enters by `travel` (largest |q_i| [m] a

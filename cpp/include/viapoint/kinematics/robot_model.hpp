@@ -15,11 +15,17 @@ namespace viapoint {
 
 class InverseKinematics;
 
+/// Nearer than this to a shoulder (share of the arm's length), elbow or wrist singularity [rad], a
+/// spherical-wrist arm is called near it: about 5°.
+inline constexpr double kNearSingular = 0.0873;
+/// The same for general arms: the smallest singular value, position rows over the arm's reach.
+inline constexpr double kNearSingularValue = 0.02;
+
 /// How near the arm is to losing a direction of motion.
 struct Singularity {
-  std::string name;        ///< "none", "shoulder", "elbow", "wrist" or "boundary" (general arms)
-  double distance = 0.0;   ///< to the nearest, in its own joint measure [rad or m]; smallest singular
-                           ///< value of the scaled Jacobian for general arms
+  std::string name;       ///< "none", "shoulder", "elbow", "wrist" or "boundary" (general arms)
+  double distance = 0.0;  ///< to the nearest: elbow and wrist [rad], shoulder [m]; smallest
+                          ///< singular value of the scaled Jacobian for general arms
   double manipulability = 0.0;  ///< √det(J Jᵀ) (Yoshikawa 1985), of the task rows the arm can move
 };
 
@@ -51,6 +57,8 @@ class RobotModel {
   [[nodiscard]] Pose fk(const JointVector& q) const;
   /// Geometric Jacobian at the tool point, base frame, through KDL.
   [[nodiscard]] Jacobian jacobian(const JointVector& q) const;
+  /// √det(J Jᵀ) over the task rows the arm can move; position rows alone where these are more than
+  /// the joints (a planar arm of two joints: x and y).
   [[nodiscard]] double manipulability(const JointVector& q) const;
   [[nodiscard]] Singularity singularity(const JointVector& q) const;
   /// Our own chain, for loops and for real time; agrees with fk() to rounding (tested).
@@ -61,6 +69,8 @@ class RobotModel {
  private:
   struct Kdl;
   RobotModel(RobotDescription description, bool has_kinematics);
+  /// @throws MotionError(kUncontrolled) without kinematics, kBadArgument on size or NaN
+  void require_kinematics(const JointVector& q) const;
 
   RobotDescription description_;
   bool has_kinematics_;

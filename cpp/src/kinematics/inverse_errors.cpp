@@ -1,0 +1,120 @@
+#include "kinematics/inverse_errors.hpp"
+
+#include <cmath>
+#include <cstdio>
+
+#include "viapoint/core/error.hpp"
+#include "viapoint/core/units.hpp"
+
+namespace viapoint {
+namespace {
+
+std::string metres(double value) {
+  char text[64];
+  std::snprintf(text, sizeof text, value < 0.01 ? "%.3g m" : "%.4f m", value);
+  return text;
+}
+
+}  // namespace
+
+PoseError pose_error(const Pose& a, const Pose& b) {
+  PoseError error;
+  error.position = (a.translation() - b.translation()).norm();
+  // ‖A − B‖ = 2√2 sin(θ/2): exact for small angles, where the trace is blind.
+  const double chord = (a.linear() - b.linear()).norm() / (2.0 * std::sqrt(2.0));
+  error.angle = 2.0 * std::asin(std::min(1.0, chord));
+  return error;
+}
+
+void require_pose(const Pose& pose) {
+  if (!pose.matrix().allFinite()) {
+    throw MotionError(ErrorCode::kBadArgument, "the pose has an element that is not finite");
+  }
+  const Eigen::Matrix3d r = pose.linear();
+  const double off = (r.transpose() * r - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  if (off <= kPoseTolerance && r.determinant() > 0.0) return;
+  Problem problem;
+  problem.code = ErrorCode::kNotARotation;
+  problem.message =
+      "the 3x3 block of the pose is not a rotation: its columns are off unit length or right "
+      "angles "
+      "by " +
+      std::to_string(off);
+  problem.value = off;
+  problem.limit = kPoseTolerance;
+  problem.ways_out = {"pass the matrix through checked_pose, which projects what is only rounded"};
+  throw MotionError(std::move(problem));
+}
+
+void require_position(const Eigen::Vector3d& position) {
+  if (position.allFinite()) return;
+  throw MotionError(ErrorCode::kBadArgument, "the position has an element that is not finite");
+}
+
+void require_joints(const JointVector& q, int joints, const char* what) {
+  if (q.size() != joints) {
+    throw MotionError(ErrorCode::kBadArgument,
+                      std::string(what) + " has " + std::to_string(q.size()) +
+                          " values, the arm has " + std::to_string(joints) + " joints");
+  }
+  for (int i = 0; i < joints; ++i) {
+    if (std::isfinite(q[i])) continue;
+    Problem problem;
+    problem.code = ErrorCode::kBadArgument;
+    problem.message =
+        std::string(what) + ": joint " + std::to_string(i + 1) + " is not a finite number";
+    problem.joint = i;
+    problem.value = q[i];
+    throw MotionError(std::move(problem));
+  }
+}
+
+std::string joint_value(JointType type, double value) {
+  char text[64];
+  if (type == JointType::kRevolute) {
+    std::snprintf(text, sizeof text, "%.2f°", value / kDegree);
+  } else {
+    std::snprintf(text, sizeof text, "%.4f m", value);
+  }
+  return text;
+}
+
+void refuse_outside_limits(const ForwardKinematics& forward, const JointTurns& turns,
+                           const std::vector<JointVector>& branches) {
+  LimitExcess least;
+  for (const JointVector& branch : branches) {
+    const LimitExcess excess = turns.excess(branch);
+    if (least.excess == 0.0 || excess.excess < least.excess) least = excess;
+  }
+  Problem problem;
+  problem.code = ErrorCode::kOutsideLimits;
+  problem.value = least.value;
+  problem.limit = least.limit;
+  problem.message = "the pose is within reach, but on no branch (" +
+                    std::to_string(branches.size()) + " found) within the joint limits; nearest: ";
+  if (least.joint >= 0) {
+    const JointType type = forward.type(least.joint);
+    problem.joint = least.joint;
+    problem.message += "joint " + std::to_string(least.joint + 1) + " at " +
+                       joint_value(type, least.value) + ", its limit is " +
+                       joint_value(type, least.limit);
+  } else {
+    problem.message += "coupled limit " + std::to_string(least.row + 1) + " at " +
+                       std::to_string(least.value) + ", its bound is " +
+                       std::to_string(least.limit);
+  }
+  problem.ways_out = {"move or turn the pose", "widen that limit, if the arm allows it"};
+  throw MotionError(std::move(problem));
+}
+
+void refuse_unreachable(const std::string& what, double distance) {
+  Problem problem;
+  problem.code = ErrorCode::kUnreachable;
+  problem.message = what + ": " + metres(distance) + " out of reach";
+  problem.value = distance;
+  problem.limit = 0.0;
+  problem.ways_out = {"move the pose towards the arm's working range by at least that much"};
+  throw MotionError(std::move(problem));
+}
+
+}  // namespace viapoint

@@ -1,0 +1,58 @@
+/// @file
+/// One branch of an inverse is an angle modulo 2π a joint: which whole turns lie within the limits,
+/// and which of them is nearest.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "viapoint/core/joint_limits.hpp"
+#include "viapoint/kinematics/forward_kinematics.hpp"
+
+namespace viapoint {
+
+/// How far a branch leaves the limits: the joint that is worst on its best turn.
+struct LimitExcess {
+  int joint = -1;       ///< -1: a coupled limit, `row`
+  int row = -1;         ///< coupled limit
+  double value = 0.0;   ///< [rad or m]
+  double limit = 0.0;   ///< [rad or m]
+  double excess = 0.0;  ///< [rad or m]
+};
+
+/// True when `a` is nearer to `reference` than `b`: the largest joint change decides, then the sum
+/// of squares.
+[[nodiscard]] bool is_nearer(const JointVector& a, const JointVector& b,
+                             const JointVector& reference);
+
+/// `angle` moved by whole turns to within π of `reference` [rad].
+[[nodiscard]] double wrap_near(double angle, double reference);
+
+/// Immutable. Threads: any.
+class JointTurns {
+ public:
+  JointTurns(const ForwardKinematics& forward, const JointLimits& limits);
+
+  /// The turn of `branch` nearest to `reference` that keeps every limit. A joint outside by no more
+  /// than rounding at a singular pose is set on its limit: check the result by its pose.
+  [[nodiscard]] std::optional<JointVector> nearest(const JointVector& branch,
+                                                   const JointVector& reference) const;
+  /// Every turn of `branch` within the limits (of joints without limits: the one nearest zero).
+  [[nodiscard]] std::vector<JointVector> all(const JointVector& branch) const;
+  /// The turn nearest to `reference`, limits left aside.
+  [[nodiscard]] JointVector unlimited(const JointVector& branch,
+                                      const JointVector& reference) const;
+  /// @pre no turn of `branch` keeps the limits
+  [[nodiscard]] LimitExcess excess(const JointVector& branch) const;
+
+ private:
+  /// The values within the limits of joint i, sorted by size.
+  [[nodiscard]] std::vector<double> values(int joint, double angle) const;
+  [[nodiscard]] bool coupled(const JointVector& q) const;
+
+  int joints_;
+  std::vector<JointType> types_;
+  JointLimits limits_;
+};
+
+}  // namespace viapoint

@@ -1,0 +1,79 @@
+#include <Eigen/SVD>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "kinematics/spherical_wrist.hpp"
+#include "viapoint/kinematics/robot_model.hpp"
+
+namespace viapoint {
+namespace {
+
+/// The rows of the task that the arm can move at all, found at a few joint vectors in general
+/// position; the position rows alone where even those rows are more than the joints.
+std::vector<int> task_rows(const ForwardKinematics& forward) {
+  std::array<bool, 6> moves{};
+  for (int sample = 1; sample <= 8; ++sample) {
+    JointVector q(forward.joints());
+    for (int i = 0; i < q.size(); ++i) q[i] = std::sin(1.7 * sample + 2.3 * i);
+    const Jacobian jacobian = forward.jacobian(forward.frames(q));
+    for (int row = 0; row < 6; ++row) {
+      if (jacobian.row(row).cwiseAbs().maxCoeff() > 1e-9) moves[static_cast<size_t>(row)] = true;
+    }
+  }
+  std::vector<int> rows;
+  for (int row = 0; row < 6; ++row) {
+    if (moves[static_cast<size_t>(row)]) rows.push_back(row);
+  }
+  if (static_cast<int>(rows.size()) > forward.joints()) {
+    std::erase_if(rows, [](int row) { return row >= 3; });
+  }
+  return rows;
+}
+
+/// Singular values of those rows, position rows divided by `length` [m].
+Eigen::VectorXd singular_values(const ForwardKinematics& forward, const JointVector& q,
+                                double length) {
+  const Jacobian jacobian = forward.jacobian(forward.frames(q));
+  const std::vector<int> rows = task_rows(forward);
+  Eigen::MatrixXd task(rows.size(), forward.joints());
+  for (size_t k = 0; k < rows.size(); ++k) {
+    const auto row = static_cast<Eigen::Index>(k);
+    task.row(row) = jacobian.row(rows[k]) / (rows[k] < 3 ? length : 1.0);
+  }
+  return Eigen::JacobiSVD<Eigen::MatrixXd>(task).singularValues();
+}
+
+}  // namespace
+
+double RobotModel::manipulability(const JointVector& q) const {
+  require_kinematics(q);
+  // √det(J Jᵀ) is the product of the singular values.
+  return singular_values(forward_, q, 1.0).prod();
+}
+
+Singularity RobotModel::singularity(const JointVector& q) const {
+  Singularity found;
+  found.manipulability = manipulability(q);
+  if (const auto arm = SphericalWrist::recognise(forward_)) {
+    const WristSingularities near = arm->singularities(q);
+    const std::array distances{near.shoulder / near.length, near.elbow, near.wrist};
+    const auto least = std::min_element(distances.begin(), distances.end());
+    const std::array names{"shoulder", "elbow", "wrist"};
+    const auto index = static_cast<size_t>(least - distances.begin());
+    found.name = *least < kNearSingular ? names[index] : "none";
+    found.distance = index == 0 ? near.shoulder : *least;
+    return found;
+  }
+  JointVector travel = JointVector::Zero(joints());
+  for (int i = 0; i < joints(); ++i) {
+    if (forward_.type(i) == JointType::kPrismatic) travel[i] = 1.0;
+  }
+  const double length = std::max(forward_.reach_bound(travel).maxCoeff(), 1e-3);
+  found.distance = singular_values(forward_, q, length).minCoeff();
+  found.name = found.distance < kNearSingularValue ? "boundary" : "none";
+  return found;
+}
+
+}  // namespace viapoint

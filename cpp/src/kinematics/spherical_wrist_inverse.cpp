@@ -1,0 +1,136 @@
+#include "kinematics/spherical_wrist_inverse.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "kinematics/inverse_errors.hpp"
+#include "viapoint/core/units.hpp"
+
+namespace viapoint {
+
+SphericalWristInverse::SphericalWristInverse(const ForwardKinematics& forward,
+                                             const JointLimits& limits, const SphericalWrist& wrist)
+    : forward_(forward),
+      limits_(limits),
+      turns_(forward, limits),
+      wrist_(wrist),
+      position_(forward, limits, "position only") {}
+
+std::string SphericalWristInverse::family() const {
+  return "spherical wrist: axes 4, 5, 6 meet in one point";
+}
+
+bool SphericalWristInverse::confirmed(const Pose& pose, const JointVector& q) const {
+  return pose_error(forward_.pose(q), pose).within(kPoseTolerance);
+}
+
+std::vector<WristBranch> SphericalWristInverse::branches(const Pose& pose,
+                                                         const JointVector& held) const {
+  WristSolutions solutions = wrist_.solve(pose, held);
+  std::erase_if(solutions.branches,
+                [&](const WristBranch& branch) { return !confirmed(pose, branch.q); });
+  if (solutions.branches.empty()) {
+    refuse_unreachable("the wrist centre of the pose", solutions.out_of_reach);
+  }
+  return std::move(solutions.branches);
+}
+
+std::vector<JointVector> SphericalWristInverse::shared(const WristBranch& branch,
+                                                       const JointVector& held) const {
+  if (!branch.wrist_free) return {branch.q};
+  const double low4 = limits_.position_min[3];
+  const double high4 = limits_.position_max[3];
+  const double low6 = limits_.position_min[5];
+  const double high6 = limits_.position_max[5];
+  // q4 + s q6 = sum + 2πk: for each k the stretch of q4 that leaves q6 within its limits.
+  std::vector<JointVector> out;
+  const bool endless = !std::isfinite(low6) || !std::isfinite(high6);
+  const int turns = endless ? 0 : static_cast<int>(std::ceil((high6 - low6) / (2.0 * kPi))) + 2;
+  for (int k = -turns; k <= turns; ++k) {
+    const double sum = branch.wrist_sum + 2.0 * kPi * k;
+    const double from = branch.wrist_sign > 0.0 ? sum - high6 : sum + low6;
+    const double to = branch.wrist_sign > 0.0 ? sum - low6 : sum + high6;
+    const double low = std::max(low4, from);
+    const double high = std::min(high4, to);
+    if (low > high) continue;
+    JointVector q = branch.q;
+    q[3] = std::clamp(held[3], low, high);
+    q[5] = branch.wrist_sign * (sum - q[3]);
+    out.push_back(q);
+  }
+  if (out.empty()) out.push_back(branch.q);
+  return out;
+}
+
+std::vector<JointVector> SphericalWristInverse::solve_all(const Pose& pose_base_tool) const {
+  require_pose(pose_base_tool);
+  const JointVector zero = JointVector::Zero(6);
+  std::vector<JointVector> solutions;
+  std::vector<JointVector> refused;
+  for (const WristBranch& branch : branches(pose_base_tool, zero)) {
+    for (const JointVector& candidate : shared(branch, zero)) {
+      const std::vector<JointVector> turned = turns_.all(candidate);
+      if (turned.empty()) refused.push_back(candidate);
+      for (const JointVector& q : turned) {
+        if (confirmed(pose_base_tool, q)) solutions.push_back(q);
+      }
+    }
+  }
+  if (solutions.empty()) refuse_outside_limits(forward_, turns_, refused);
+  std::sort(solutions.begin(), solutions.end(),
+            [&](const auto& a, const auto& b) { return is_nearer(a, b, zero); });
+  // Branches meet at singular poses: what is found twice is said once.
+  constexpr double kSame = 1e-9;
+  std::vector<JointVector> distinct;
+  for (const JointVector& q : solutions) {
+    const bool known = std::any_of(distinct.begin(), distinct.end(), [&](const JointVector& other) {
+      return (q - other).lpNorm<Eigen::Infinity>() < kSame;
+    });
+    if (!known) distinct.push_back(q);
+  }
+  return distinct;
+}
+
+JointVector SphericalWristInverse::solve_near(const Pose& pose_base_tool,
+                                              const JointVector& near) const {
+  require_pose(pose_base_tool);
+  require_joints(near, 6, "near");
+  std::optional<JointVector> best;
+  std::vector<JointVector> refused;
+  for (const WristBranch& branch : branches(pose_base_tool, near)) {
+    for (const JointVector& candidate : shared(branch, near)) {
+      const auto q = turns_.nearest(candidate, near);
+      if (!q || !confirmed(pose_base_tool, *q)) {
+        refused.push_back(candidate);
+        continue;
+      }
+      if (!best || is_nearer(*q, *best, near)) best = *q;
+    }
+  }
+  if (!best) refuse_outside_limits(forward_, turns_, refused);
+  return *best;
+}
+
+JointVector SphericalWristInverse::solve_near_unlimited(const Pose& pose_base_tool,
+                                                        const JointVector& near) const {
+  require_pose(pose_base_tool);
+  require_joints(near, 6, "near");
+  std::optional<JointVector> best;
+  for (const WristBranch& branch : branches(pose_base_tool, near)) {
+    const JointVector q = turns_.unlimited(branch.q, near);
+    if (!best || is_nearer(q, *best, near)) best = q;
+  }
+  return *best;
+}
+
+std::vector<JointVector> SphericalWristInverse::solve_all(const Eigen::Vector3d& position) const {
+  return position_.solve_all(position);
+}
+
+JointVector SphericalWristInverse::solve_near(const Eigen::Vector3d& position,
+                                              const JointVector& near) const {
+  return position_.solve_near(position, near);
+}
+
+}  // namespace viapoint

@@ -1,0 +1,195 @@
+// Robots in URDF, read by liburdfdom: the chain of moving joints from the root link to the tip.
+#include <console_bridge/console.h>
+#include <urdf_parser/urdf_parser.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <mutex>
+
+#include "viapoint/core/error.hpp"
+#include "viapoint/kinematics/robot_description.hpp"
+
+namespace viapoint {
+namespace {
+
+/// URDF has no acceleration and jerk limits: these multiples of the velocity limit are chosen.
+constexpr double kAccelerationPerVelocity = 10.0;
+constexpr double kJerkPerVelocity = 100.0;
+
+[[noreturn]] void refuse(const std::string& source, const std::string& what,
+                         std::vector<std::string> ways_out = {},
+                         ErrorCode code = ErrorCode::kBadRobot) {
+  Problem problem;
+  problem.code = code;
+  problem.message = what;
+  problem.ways_out = std::move(ways_out);
+  problem.file = source;
+  throw MotionError(std::move(problem));
+}
+
+/// Collects what liburdfdom would print.
+class Complaints final : public console_bridge::OutputHandler {
+ public:
+  void log(const std::string& text, console_bridge::LogLevel level, const char*, int) override {
+    if (level < console_bridge::CONSOLE_BRIDGE_LOG_ERROR) return;
+    if (!text_.empty()) text_ += "; ";
+    text_ += text;
+  }
+  [[nodiscard]] const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+urdf::ModelInterfaceSharedPtr parse(const std::string& text, const std::string& source) {
+  if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
+    refuse(source, "the file is empty; expected a URDF with a <robot> element");
+  }
+  // liburdfdom reports through one handler for the whole process.
+  static std::mutex one_at_a_time;
+  const std::lock_guard lock(one_at_a_time);
+  Complaints complaints;
+  console_bridge::useOutputHandler(&complaints);
+  urdf::ModelInterfaceSharedPtr model;
+  std::string failure;
+  try {
+    model = urdf::parseURDF(text);
+  } catch (const std::exception& error) {
+    failure = error.what();
+  }
+  console_bridge::restorePreviousOutputHandler();
+  if (model) return model;
+  const std::string reason = failure.empty() ? complaints.text() : failure;
+  std::vector<std::string> ways_out{"check that the file was written whole"};
+  if (reason.find("limit") != std::string::npos) {
+    ways_out = {
+        "give every revolute and prismatic joint "
+        "<limit lower=\"...\" upper=\"...\" effort=\"...\" velocity=\"...\"/> [rad or m, per s]"};
+  }
+  refuse(source, "not a URDF robot: " + (reason.empty() ? "it cannot be parsed" : reason),
+         ways_out);
+}
+
+Pose to_pose(const urdf::Pose& pose) {
+  double x = 0.0;
+  double y = 0.0;
+  double z = 0.0;
+  double w = 1.0;
+  pose.rotation.getQuaternion(x, y, z, w);
+  Pose out = Pose::Identity();
+  out.linear() = Eigen::Quaterniond(w, x, y, z).normalized().toRotationMatrix();
+  out.translation() = Eigen::Vector3d(pose.position.x, pose.position.y, pose.position.z);
+  return out;
+}
+
+urdf::LinkConstSharedPtr find_tip(const urdf::ModelInterface& model, const std::string& source,
+                                  const std::string& tip) {
+  std::vector<std::string> leaves;
+  for (const auto& [name, link] : model.links_) {
+    if (link->child_joints.empty()) leaves.push_back(name);
+  }
+  std::string list;
+  for (const std::string& name : leaves) list += (list.empty() ? "" : ", ") + name;
+  if (!tip.empty()) {
+    const auto link = model.getLink(tip);
+    if (!link) refuse(source, "no link is called \"" + tip + "\"", {"the leaf links are: " + list});
+    return link;
+  }
+  if (leaves.size() != 1) {
+    refuse(source, "the robot branches: it has " + std::to_string(leaves.size()) + " leaf links",
+           {"name the tip, one of: " + list});
+  }
+  return model.getLink(leaves.front());
+}
+
+void add_limits(RobotDescription& out, const urdf::Joint& joint, const std::string& source) {
+  const std::string name = "joint \"" + joint.name + "\"";
+  const std::string add = "add velocity=\"...\" (positive) to the <limit> of this joint";
+  if (!joint.limits) refuse(source, name + " has no <limit>", {add}, ErrorCode::kBadLimits);
+  const urdf::JointLimits& given = *joint.limits;
+  if (!(given.velocity > 0.0) || !std::isfinite(given.velocity)) {
+    refuse(source,
+           name + ": the velocity limit is " + std::to_string(given.velocity) +
+               ", it must be positive and finite",
+           {add}, ErrorCode::kBadLimits);
+  }
+  double low = given.lower;
+  double high = given.upper;
+  if (joint.type == urdf::Joint::CONTINUOUS) {
+    low = -std::numeric_limits<double>::infinity();
+    high = -low;
+  }
+  if (!(low < high)) {
+    refuse(source,
+           name + ": the lower limit " + std::to_string(low) + " must be below the upper limit " +
+               std::to_string(high),
+           {"write lower=\"...\" and upper=\"...\" in the <limit> of this joint"},
+           ErrorCode::kBadLimits);
+  }
+  JointLimits& limits = out.limits;
+  const Eigen::Index i = limits.velocity.size();
+  for (JointVector* values : {&limits.position_min, &limits.position_max, &limits.velocity,
+                              &limits.acceleration, &limits.jerk}) {
+    values->conservativeResize(i + 1);
+  }
+  limits.position_min[i] = low;
+  limits.position_max[i] = high;
+  limits.velocity[i] = given.velocity;
+  limits.acceleration[i] = kAccelerationPerVelocity * given.velocity;
+  limits.jerk[i] = kJerkPerVelocity * given.velocity;
+}
+
+}  // namespace
+
+RobotDescription description_from_urdf(const std::string& text, const std::string& source,
+                                       const std::string& tip) {
+  const urdf::ModelInterfaceSharedPtr model = parse(text, source);
+  std::vector<urdf::JointConstSharedPtr> joints;
+  for (auto link = find_tip(*model, source, tip); link->parent_joint;
+       link = model->getLink(link->parent_joint->parent_link_name)) {
+    joints.push_back(link->parent_joint);
+  }
+  std::reverse(joints.begin(), joints.end());
+
+  RobotDescription out;
+  out.name = model->getName();
+  out.title = out.name + ", from URDF";
+  out.sources = {source};
+  out.chosen = {"acceleration: 10 x velocity, URDF has none",
+                "jerk: 100 x velocity, URDF has none"};
+  Pose before = Pose::Identity();
+  for (const auto& joint : joints) {
+    before = before * to_pose(joint->parent_to_joint_origin_transform);
+    if (joint->type == urdf::Joint::FIXED) continue;
+    const std::string name = "joint \"" + joint->name + "\"";
+    if (joint->type != urdf::Joint::REVOLUTE && joint->type != urdf::Joint::CONTINUOUS &&
+        joint->type != urdf::Joint::PRISMATIC) {
+      refuse(source, name +
+                         " is floating or planar; only revolute, continuous, prismatic and fixed "
+                         "joints are supported");
+    }
+    if (joint->mimic) refuse(source, name + " mimics another; that is not supported");
+    if (out.chain.size() == static_cast<size_t>(kMaxJoints)) {
+      refuse(source, "more than " + std::to_string(kMaxJoints) + " moving joints");
+    }
+    const Eigen::Vector3d axis(joint->axis.x, joint->axis.y, joint->axis.z);
+    if (!(axis.norm() > 1e-9)) refuse(source, name + ": its <axis> has no direction");
+    ChainJoint chain;
+    chain.type =
+        joint->type == urdf::Joint::PRISMATIC ? JointType::kPrismatic : JointType::kRevolute;
+    chain.before = before;
+    chain.axis = axis.normalized();
+    add_limits(out, *joint, source);
+    out.chain.push_back(chain);
+    out.joint_names.push_back(joint->name);
+    before = Pose::Identity();
+  }
+  if (out.chain.empty()) refuse(source, "no moving joint between the root link and the tip");
+  out.flange = before;
+  out.limits.coupling.resize(0, static_cast<Eigen::Index>(out.chain.size()));
+  out.limits.validate();
+  return out;
+}
+
+}  // namespace viapoint
