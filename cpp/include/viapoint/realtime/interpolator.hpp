@@ -1,0 +1,85 @@
+/// @file
+/// The tick: turns a finished motion into one setpoint a cycle.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+
+#include "viapoint/core/joint_limits.hpp"
+#include "viapoint/realtime/drive.hpp"
+#include "viapoint/realtime/lookahead.hpp"
+#include "viapoint/realtime/motion_log.hpp"
+#include "viapoint/realtime/nonblocking.hpp"
+#include "viapoint/realtime/rate_governor.hpp"
+#include "viapoint/trajectory/trajectory.hpp"
+
+namespace viapoint {
+
+/// What the operator wants of the motion under way. A stop is final for its motion.
+enum class Wish : std::uint8_t { kRun, kPause, kStop };
+
+/// Runs one motion after another, each from rest to rest, and holds position between them.
+///
+/// At full rate the setpoint of cycle k is the trajectory at exactly k cycles of nominal time; the
+/// last one is its end point. Override, pause, resume and stop change only the rate at which
+/// nominal time runs (RateGovernor): the geometry never changes, and every joint keeps its limits
+/// through each change. A wait is a piece of constant position and runs at the rate like the rest;
+/// outputs change with the first setpoint of the piece that carries them.
+///
+/// Real-time: all but the constructor is safe; a cycle costs O(joints) whatever the motion's
+/// length. Threads: one.
+class Interpolator {
+ public:
+  /// Holds `position` until the first begin(). Allocates.
+  Interpolator(const JointLimits& limits, std::chrono::nanoseconds cycle,
+               const JointVector& position);
+
+  /// Takes a motion that begins where the arm rests, at rest (admit() has checked it). It must stay
+  /// alive until active() is false. @pre !active()
+  void begin(const Trajectory& motion) noexcept VIAPOINT_NONBLOCKING;
+  /// Share of the planned speed, clamped to [0, 1]; 0 acts as a pause. Kept between motions.
+  void set_override(double share) noexcept VIAPOINT_NONBLOCKING;
+  void wish(Wish wish) noexcept VIAPOINT_NONBLOCKING;
+
+  /// One cycle: fills in the setpoint due now and moves on. Returns the state it belongs to:
+  /// kFinished with the end point, kStopped with the first setpoint at rest after a stop.
+  RunState tick(Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKING;
+
+  /// True from begin() until a tick has returned kFinished or kStopped.
+  [[nodiscard]] bool active() const noexcept { return motion_ != nullptr; }
+  /// Of the last setpoint: nominal time [s], rate dτ/dt, program step (-1 before the first motion).
+  [[nodiscard]] double nominal_time() const noexcept { return shown_.tau; }
+  [[nodiscard]] double rate() const noexcept { return shown_.rate; }
+  [[nodiscard]] int move() const noexcept { return move_; }
+  [[nodiscard]] RunState state() const noexcept { return run_state_; }
+
+ private:
+  [[nodiscard]] double target() const noexcept;
+  [[nodiscard]] RunState classify() const noexcept;
+  void enter_pieces() noexcept VIAPOINT_NONBLOCKING;
+  void apply_outputs(const TrajectoryPiece& piece) noexcept VIAPOINT_NONBLOCKING;
+  void evaluate(double curvature, Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKING;
+  void move_on() noexcept VIAPOINT_NONBLOCKING;
+
+  double cycle_;
+  RateGovernor governor_;
+  Lookahead lookahead_;
+  const Trajectory* motion_ = nullptr;
+  std::size_t piece_ = 0;
+  RateState now_;
+  /// At a constant rate τ is anchor + n cycle ρ: a product, so that nothing adds up.
+  double anchor_ = 0.0;
+  std::uint64_t since_anchor_ = 0;
+
+  double override_ = 1.0;
+  Wish wish_ = Wish::kRun;
+  RunState run_state_ = RunState::kIdle;
+  RateState shown_;
+  int move_ = -1;
+  std::uint64_t cycles_ = 0;
+  std::uint64_t outputs_ = 0;
+  JointVector position_;
+};
+
+}  // namespace viapoint

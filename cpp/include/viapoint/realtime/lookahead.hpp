@@ -1,0 +1,71 @@
+/// @file
+/// What the path will ask of each joint in the nominal time to come, as ranges.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "viapoint/core/joint_limits.hpp"
+#include "viapoint/realtime/nonblocking.hpp"
+#include "viapoint/trajectory/trajectory.hpp"
+
+namespace viapoint {
+
+/// A closed range of a quantity.
+struct Range {
+  double low = 0.0;
+  double high = 0.0;
+};
+
+/// Ranges of dq/dτ, d²q/dτ², d³q/dτ³ of every joint over a stretch of nominal time τ
+/// [rad or m per s, s², s³].
+struct DerivativeRanges {
+  std::array<Range, kMaxJoints> first, second, third;
+};
+
+/// A window of cells, equally wide in nominal time, that slides along a trajectory. Each cell holds
+/// the ranges of the derivatives in it; every cell is computed once, a few a cycle, so that a
+/// question about the future costs no polynomial at all.
+///
+/// A cell's range is the hull of three samples of each piece in it, widened by what a parabola
+/// through them may exceed it, twice over, and clipped to the joint's limits: those bound the
+/// nominal motion everywhere (its certificate proves it), so that the widening never takes away
+/// room at a limit that is reached.
+class Lookahead {
+ public:
+  /// @param cell width of a cell [s of nominal time]. Allocates. @pre limits valid, cell > 0
+  Lookahead(const JointLimits& limits, double cell);
+
+  /// Starts anew at the beginning of `trajectory`, which must outlive its use here.
+  /// Real-time: safe.
+  void begin(const Trajectory& trajectory) noexcept VIAPOINT_NONBLOCKING;
+  /// Forgets what lies before τ [s] and computes at most `cells` new cells. Real-time: safe.
+  void advance(double tau, int cells) noexcept VIAPOINT_NONBLOCKING;
+  /// Ranges over [from, to] [s]; false where that is not known yet. After the end of the
+  /// trajectory the arm rests. Real-time: safe.
+  [[nodiscard]] bool ranges(double from, double to,
+                            DerivativeRanges& out) const noexcept VIAPOINT_NONBLOCKING;
+
+  [[nodiscard]] int joints() const noexcept { return joints_; }
+  /// Cells that the window holds.
+  static constexpr int kCells = 256;
+
+ private:
+  void compute_next_cell() noexcept VIAPOINT_NONBLOCKING;
+  void add_piece(const TrajectoryPiece& piece, double from, double to,
+                 DerivativeRanges& cell) const noexcept VIAPOINT_NONBLOCKING;
+  void add_rest(DerivativeRanges& cell) const noexcept VIAPOINT_NONBLOCKING;
+
+  int joints_;
+  JointLimits limits_;
+  double width_;
+  const Trajectory* trajectory_ = nullptr;
+  std::size_t piece_ = 0;                ///< where the next cell begins
+  std::int64_t first_ = 0;               ///< first cell still held
+  std::int64_t end_ = 0;                 ///< first cell not computed yet
+  std::vector<DerivativeRanges> cells_;  ///< ring, kCells long
+};
+
+}  // namespace viapoint

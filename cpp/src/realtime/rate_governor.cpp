@@ -1,0 +1,267 @@
+#include "viapoint/realtime/rate_governor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace viapoint {
+namespace {
+
+/// Rates that differ by less are the same: a step of this size is far below every limit's slack.
+constexpr double kSameRate = 1e-12;
+/// Relative slack of the limits for rounding, as small as that of the planner.
+constexpr double kRounding = 1e-9;
+/// Largest change of the rate in a cycle, and cycles to get there, where the joints would allow
+/// more (at rest they allow anything).
+constexpr double kMaxRateStep = 0.05;
+constexpr double kCyclesToMaxSlope = 4.0;
+/// A second, weaker step back for what the linear estimate of the room did not see.
+constexpr double kWeaker = 0.9;
+/// Pushes tried a cycle.
+constexpr int kTrials = 5;
+
+Range product(const Range& a, const Range& b) noexcept {
+  const double p1 = a.low * b.low, p2 = a.low * b.high, p3 = a.high * b.low, p4 = a.high * b.high;
+  return {std::min({p1, p2, p3, p4}), std::max({p1, p2, p3, p4})};
+}
+
+/// Narrows `x` to where f x <= most for every f in `factor`; false where there is no such x.
+bool narrow(Range& x, const Range& factor, double most) noexcept {
+  if (most >= 0.0) {
+    if (factor.high > 0.0 && factor.high * x.high > most) x.high = most / factor.high;
+    if (factor.low < 0.0 && factor.low * x.low > most) x.low = most / factor.low;
+    return x.low <= x.high;
+  }
+  if (factor.low > 0.0) {
+    x.high = std::min(x.high, most / factor.low);
+  } else if (factor.high < 0.0) {
+    x.low = std::max(x.low, most / factor.high);
+  } else {
+    return false;
+  }
+  return x.low <= x.high;
+}
+
+Range hull(double a, double b) noexcept { return {std::min(a, b), std::max(a, b)}; }
+
+}  // namespace
+
+/// One stretch of constant γ: the ranges of everything that the joints' motion is made of.
+struct RateGovernor::Stretch {
+  DerivativeRanges path;
+  Range rate, slope;
+  double curvature = 0.0;
+
+  /// Takes ρ and α from a stretch that begins at `from`; false where ρ would leave [0, 1].
+  bool take(const RateState& from, const RateState& to, double gamma) noexcept {
+    rate = hull(from.rate, to.rate);
+    slope = hull(from.slope, to.slope);
+    curvature = gamma;
+    if (from.slope * to.slope < 0.0) {
+      const double turn = from.rate - 0.5 * from.slope * from.slope / gamma;
+      rate.low = std::min(rate.low, turn);
+      rate.high = std::max(rate.high, turn);
+    }
+    if (rate.low < -kSameRate || rate.high > 1.0 + kSameRate) return false;
+    rate.low = std::clamp(rate.low, 0.0, 1.0);
+    rate.high = std::clamp(rate.high, 0.0, 1.0);
+    return true;
+  }
+};
+
+RateGovernor::RateGovernor(const JointLimits& limits, double cycle)
+    : joints_(limits.joints()),
+      limits_(limits),
+      cycle_(cycle),
+      max_slope_(kMaxRateStep / cycle),
+      max_curvature_(max_slope_ / (kCyclesToMaxSlope * cycle)) {
+  // How long the slowest joint takes to build up its acceleration, or to turn round a rate under a
+  // jerk that the motion itself uses up (a quarter swing of ρ'' = -3 J/v ρ).
+  double longest = 0.0;
+  for (int i = 0; i < joints_; ++i) {
+    longest = std::max({longest, limits.acceleration[i] / limits.jerk[i],
+                        std::sqrt(limits.velocity[i] / limits.jerk[i])});
+  }
+  constexpr double kWayBack = 1.5;
+  constexpr double kMaxStride = 64.0;
+  stride_ = static_cast<int>(
+      std::clamp(std::ceil(kWayBack * longest / (kSteps * cycle)), 1.0, kMaxStride));
+}
+
+double RateGovernor::cell() const noexcept { return 0.5 * stride_ * cycle_; }
+
+void RateGovernor::reset() noexcept VIAPOINT_NONBLOCKING {
+  plan_.steps = 0;
+  plan_.position = 0;
+}
+
+double RateGovernor::decide(const RateState& now, double target,
+                            const Lookahead& lookahead) noexcept VIAPOINT_NONBLOCKING {
+  wanted_ = target;
+  const double end = changing() ? plan_.end_rate : now.rate;
+  if (std::abs(target - end) > kSameRate) improve(now, target, lookahead);
+  return changing() ? plan_.step[static_cast<std::size_t>(plan_.position)].curvature : 0.0;
+}
+
+RateState RateGovernor::advance(const RateState& now) noexcept VIAPOINT_NONBLOCKING {
+  if (!changing()) return now.after(cycle_, 0.0);
+  Step& step = plan_.step[static_cast<std::size_t>(plan_.position)];
+  RateState next = now.after(cycle_, step.curvature);
+  if (--step.cycles == 0) ++plan_.position;
+  if (!changing()) {
+    next.slope = 0.0;
+    next.rate = std::abs(plan_.end_rate - wanted_) <= kSameRate ? wanted_ : plan_.end_rate;
+  }
+  next.rate = std::clamp(next.rate, 0.0, 1.0);
+  return next;
+}
+
+void RateGovernor::improve(const RateState& now, double target,
+                           const Lookahead& lookahead) noexcept VIAPOINT_NONBLOCKING {
+  const double end = changing() ? plan_.end_rate : now.rate;
+  const double base =
+      changing() ? plan_.step[static_cast<std::size_t>(plan_.position)].curvature : 0.0;
+  const double missing = target - end;
+
+  Stretch stretch;
+  const double furthest = now.tau + cycle_ * (now.rate + cycle_ * max_slope_);
+  if (!lookahead.ranges(now.tau, furthest, stretch.path)) return;
+  if (!stretch.take(now, now, 0.0)) return;
+  Range curvature{std::max(-max_curvature_, (-max_slope_ - now.slope) / cycle_),
+                  std::min(max_curvature_, (max_slope_ - now.slope) / cycle_)};
+  if (!room(stretch, cycle_, curvature)) return;
+  // One cycle of γ and its undoing move the rate by at least γ cycle².
+  double push = std::clamp(base + missing / (cycle_ * cycle_), curvature.low, curvature.high);
+
+  for (int trial = 0; trial < kTrials; ++trial) {
+    if ((push - base) * missing <= 0.0) return;
+    if (!prove(now, push, lookahead, trial_)) {
+      push = base + 0.5 * (push - base);
+      continue;
+    }
+    const double still_missing = target - trial_.end_rate;
+    if (still_missing * missing >= 0.0 || std::abs(still_missing) <= kSameRate) {
+      std::swap(plan_, trial_);
+      return;
+    }
+    // Too far: the end is convex in the push, so the chord stays on the near side.
+    push = base + (push - base) * missing / (missing - still_missing);
+  }
+}
+
+bool RateGovernor::prove(RateState state, double push, const Lookahead& lookahead,
+                         Plan& plan) const noexcept VIAPOINT_NONBLOCKING {
+  plan.steps = 0;
+  plan.position = 0;
+  RateState next = state.after(cycle_, push);
+  Stretch stretch;
+  if (next.tau < state.tau || !stretch.take(state, next, push)) return false;
+  if (!lookahead.ranges(state.tau, next.tau, stretch.path) || !within_limits(stretch)) {
+    return false;
+  }
+  if (std::abs(next.slope) < kSameRate) next.slope = 0.0;
+  plan.step[static_cast<std::size_t>(plan.steps++)] = {push, 1};
+  state = next;
+  while (state.slope != 0.0) {
+    if (plan.steps > kSteps || !step_back(state, lookahead, plan)) return false;
+  }
+  plan.end_rate = std::clamp(state.rate, 0.0, 1.0);
+  return true;
+}
+
+bool RateGovernor::step_back(RateState& state, const Lookahead& lookahead,
+                             Plan& plan) const noexcept VIAPOINT_NONBLOCKING {
+  const double time = stride_ * cycle_;
+  Stretch stretch;
+  const double furthest =
+      state.tau + std::max(0.0, time * (state.rate + 0.5 * time * std::max(0.0, state.slope)));
+  if (!lookahead.ranges(state.tau, furthest, stretch.path)) return false;
+  if (!stretch.take(state, state, 0.0)) return false;
+
+  // Straight back to slope 0 where that is allowed; never past it, nor away from it unless forced.
+  const double wanted = -state.slope / cycle_;
+  const auto strongest = [&](int cycles, double& gamma) {
+    Range curvature{-max_curvature_, max_curvature_};
+    if (!room(stretch, cycles * cycle_, curvature)) return false;
+    gamma = std::clamp(wanted, curvature.low, curvature.high);
+    return true;
+  };
+  double gamma = 0.0;
+  if (!strongest(1, gamma)) return false;
+  const int cycles = cycles_back(state.slope, gamma);
+  if (cycles > 1 && !strongest(cycles, gamma)) return false;
+  return try_step(state, gamma, furthest, stretch, plan) ||
+         try_step(state, kWeaker * gamma, furthest, stretch, plan);
+}
+
+int RateGovernor::cycles_back(double slope, double gamma) const noexcept VIAPOINT_NONBLOCKING {
+  if (gamma * slope > 0.0) return 1;
+  const double cycles = gamma == 0.0 ? stride_ : -slope / (gamma * cycle_);
+  return std::max(1, static_cast<int>(std::min(cycles, static_cast<double>(stride_))));
+}
+
+bool RateGovernor::try_step(RateState& state, double gamma, double furthest, Stretch& stretch,
+                            Plan& plan) const noexcept VIAPOINT_NONBLOCKING {
+  const int cycles = cycles_back(state.slope, gamma);
+  const double undone = -state.slope / cycle_;
+  const bool lands = cycles == 1 && gamma * undone > 0.0 &&
+                     std::abs(gamma) >= std::abs(undone) * (1.0 - kRounding);
+  if (lands) gamma = undone;
+  RateState next = state.after(cycles * cycle_, gamma);
+  if (lands) next.slope = 0.0;
+  const bool possible = stretch.take(state, next, gamma);
+  if (!possible || next.tau > furthest || std::abs(next.slope) > max_slope_) return false;
+  if (!within_limits(stretch)) return false;
+  plan.step[static_cast<std::size_t>(plan.steps++)] = {gamma, cycles};
+  state = next;
+  return true;
+}
+
+bool RateGovernor::within_limits(const Stretch& stretch) const noexcept VIAPOINT_NONBLOCKING {
+  const Range& rate = stretch.rate;
+  const Range square{rate.low * rate.low, rate.high * rate.high};
+  const Range cube{square.low * rate.low, square.high * rate.high};
+  const Range mixed = product(rate, {3.0 * stretch.slope.low, 3.0 * stretch.slope.high});
+  const Range gamma{stretch.curvature, stretch.curvature};
+  for (int j = 0; j < joints_; ++j) {
+    const auto i = static_cast<std::size_t>(j);
+    const DerivativeRanges& path = stretch.path;
+    const Range drift = product(path.second[i], square);
+    const Range push = product(path.first[i], stretch.slope);
+    const double acceleration = limits_.acceleration[j] * (1.0 + kRounding);
+    if (drift.high + push.high > acceleration || drift.low + push.low < -acceleration) return false;
+    const Range nominal = product(path.third[i], cube);
+    const Range turn = product(path.second[i], mixed);
+    const Range bend = product(path.first[i], gamma);
+    const double jerk = limits_.jerk[j] * (1.0 + kRounding);
+    if (nominal.high + turn.high + bend.high > jerk) return false;
+    if (nominal.low + turn.low + bend.low < -jerk) return false;
+  }
+  return true;
+}
+
+bool RateGovernor::room(const Stretch& stretch, double time,
+                        Range& curvature) const noexcept VIAPOINT_NONBLOCKING {
+  const Range& rate = stretch.rate;
+  const Range cube{rate.low * rate.low * rate.low, rate.high * rate.high * rate.high};
+  for (int j = 0; j < joints_; ++j) {
+    const auto i = static_cast<std::size_t>(j);
+    // q⃛ = q'''ρ³ + 3q''ρ(α + γt) + q'γ is linear in γ; its worst is at the start or the end.
+    const Range nominal = product(stretch.path.third[i], cube);
+    const Range mixed = product(stretch.path.second[i], {3.0 * rate.low, 3.0 * rate.high});
+    const Range turn = product(mixed, stretch.slope);
+    const Range& start = stretch.path.first[i];
+    const Range end{start.low + time * mixed.low, start.high + time * mixed.high};
+    // Half the slack, so that the strongest push passes within_limits() in spite of rounding.
+    const double jerk = limits_.jerk[j] * (1.0 + 0.5 * kRounding);
+    for (const Range& factor : {start, end}) {
+      if (!narrow(curvature, factor, jerk - nominal.high - turn.high)) return false;
+      if (!narrow(curvature, {-factor.high, -factor.low}, jerk + nominal.low + turn.low)) {
+        return false;
+      }
+    }
+  }
+  return curvature.low <= curvature.high;
+}
+
+}  // namespace viapoint
