@@ -104,8 +104,8 @@ class Marcher {
   bool advance(double next) {
     const double h = next - s_;
     const PathPoint& from = here_.point;
-    const JointVector guess = from.q + h * (from.q1 + h * (0.5 * from.q2 + h / 6.0 * from.q3));
-    std::optional<CurveFollower::Knot> knot = follower_.solve(next, guess);
+    const JointVector guess = from.q + h * (from.q1 + 0.5 * h * from.q2);
+    const std::optional<CurveFollower::Knot> knot = follower_.solve(next, guess);
     if (!knot || knot->rate_residual > kRateResidual) {
       step_ = 0.5 * h;
       return false;
@@ -141,7 +141,6 @@ class Marcher {
     result_.pieces.push_back(piece);
     result_.knots.push_back(knot.point.q);
     here_ = knot;
-    here_.point.q3 = piece.at(piece.length).q3;
     s_ = next;
   }
 
