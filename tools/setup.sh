@@ -104,7 +104,8 @@ make_environment() {
   say "Building the package (some minutes the first time)"
   run_logged pip-viapoint "the package did not build" \
     "$venv/bin/python" -m pip install --disable-pip-version-check --no-build-isolation --no-deps \
-    -e "$root" -Cbuild-dir="$tree" -Ccmake.define.VIAPOINT_BUILD_TESTS=ON
+    -e "$root" --config-settings=build-dir="$tree" \
+    --config-settings=cmake.define.VIAPOINT_BUILD_TESTS=ON
 }
 
 # Builds what changed and puts it where pip put it the first time.
