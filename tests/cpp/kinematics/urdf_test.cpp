@@ -1,0 +1,183 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "kinematics/arms.hpp"
+#include "viapoint/core/error.hpp"
+#include "viapoint/core/units.hpp"
+#include "viapoint/kinematics/inverse_kinematics.hpp"
+
+namespace viapoint {
+namespace {
+
+/// Two turning joints, a slide between fixed links, and a tool flange.
+const char* const kGood = R"(<robot name="trio">
+  <link name="base"/><link name="upper"/><link name="bracket"/><link name="fore"/>
+  <link name="carriage"/><link name="flange"/>
+  <joint name="shoulder" type="revolute">
+    <parent link="base"/><child link="upper"/><origin xyz="0 0 0.5" rpy="0 0 0"/>
+    <axis xyz="0 0 1"/><limit lower="-2" upper="2" effort="1" velocity="1.5"/>
+  </joint>
+  <joint name="mount" type="fixed">
+    <parent link="upper"/><child link="bracket"/><origin xyz="1 0 0" rpy="1.5707963267948966 0 0"/>
+  </joint>
+  <joint name="elbow" type="continuous">
+    <parent link="bracket"/><child link="fore"/><axis xyz="0 0 -2"/>
+    <limit effort="1" velocity="2"/>
+  </joint>
+  <joint name="slide" type="prismatic">
+    <parent link="fore"/><child link="carriage"/><origin xyz="0.2 0 0"/>
+    <axis xyz="1 0 0"/><limit lower="0" upper="0.4" effort="1" velocity="0.3"/>
+  </joint>
+  <joint name="end" type="fixed">
+    <parent link="carriage"/><child link="flange"/><origin xyz="0.1 0 0"/>
+  </joint>
+</robot>)";
+
+std::string with(std::string text, const std::string& from, const std::string& to) {
+  const size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+Problem problem_of(const std::string& text, const std::string& tip = "") {
+  try {
+    (void)description_from_urdf(text, "trio.urdf", tip);
+  } catch (const MotionError& error) {
+    EXPECT_EQ(error.problem().file, "trio.urdf");
+    return error.problem();
+  }
+  ADD_FAILURE() << "accepted";
+  return {};
+}
+
+bool says(const Problem& problem, const std::string& text) {
+  return problem.describe().find(text) != std::string::npos;
+}
+
+TEST(UrdfDescription, ReadsTheChainThroughFixedJoints) {
+  const RobotPtr robot = RobotModel::make(description_from_urdf(kGood, "trio.urdf"));
+  ASSERT_EQ(robot->joints(), 3);
+  EXPECT_EQ(robot->description().joint_names,
+            (std::vector<std::string>{"shoulder", "elbow", "slide"}));
+  EXPECT_EQ(robot->forward().type(2), JointType::kPrismatic);
+  for (const double q1 : {-0.7, 0.0, 1.1}) {
+    for (const double q2 : {-0.4, 0.9}) {
+      for (const double q3 : {0.0, 0.25}) {
+        // The elbow turns about the bracket's −z, which is the upper arm's +y: down for q2 > 0.
+        const double reach = 0.2 + q3 + 0.1;
+        const double out = 1.0 + reach * std::cos(q2);
+        const Eigen::Vector3d expected(out * std::cos(q1), out * std::sin(q1),
+                                       0.5 - reach * std::sin(q2));
+        const Pose pose = robot->fk(Eigen::Vector3d(q1, q2, q3));
+        EXPECT_LT((pose.translation() - expected).norm(), 1e-12);
+      }
+    }
+  }
+}
+
+TEST(UrdfDescription, ChoosesAccelerationAndJerkAndSaysSo) {
+  const RobotDescription robot = description_from_urdf(kGood, "trio.urdf");
+  EXPECT_EQ(robot.limits.velocity, Eigen::Vector3d(1.5, 2.0, 0.3));
+  EXPECT_EQ(robot.limits.acceleration, 10.0 * robot.limits.velocity);
+  EXPECT_EQ(robot.limits.jerk, 100.0 * robot.limits.velocity);
+  EXPECT_TRUE(std::isinf(robot.limits.position_max[1]));
+  ASSERT_EQ(robot.chosen.size(), 2u);
+  EXPECT_NE(robot.chosen[0].find("acceleration"), std::string::npos);
+}
+
+TEST(UrdfDescription, StopsAtTheNamedTip) {
+  const RobotDescription robot = description_from_urdf(kGood, "trio.urdf", "fore");
+  EXPECT_EQ(robot.joint_names, (std::vector<std::string>{"shoulder", "elbow"}));
+  EXPECT_TRUE(says(problem_of(kGood, "hand"), "no link is called \"hand\""));
+}
+
+TEST(UrdfDescription, RefusesToGuessABranch) {
+  const std::string forked = with(kGood, "</robot>", R"(<link name="camera"/>
+    <joint name="eye" type="fixed"><parent link="fore"/><child link="camera"/></joint></robot>)");
+  const Problem problem = problem_of(forked);
+  EXPECT_EQ(problem.code, ErrorCode::kBadRobot);
+  EXPECT_TRUE(says(problem, "camera, flange")) << problem.describe();
+  EXPECT_NO_THROW((void)description_from_urdf(forked, "trio.urdf", "flange"));
+}
+
+TEST(UrdfDescription, RefusesZeroVelocityWithWhatToAdd) {
+  const Problem problem = problem_of(with(kGood, "velocity=\"0.3\"", "velocity=\"0\""));
+  EXPECT_EQ(problem.code, ErrorCode::kBadLimits);
+  EXPECT_TRUE(says(problem, "\"slide\""));
+  EXPECT_TRUE(says(problem, "add velocity")) << problem.describe();
+}
+
+TEST(UrdfDescription, RefusesMissingVelocityWithWhatToAdd) {
+  const Problem problem = problem_of(with(kGood, " velocity=\"0.3\"", ""));
+  EXPECT_TRUE(says(problem, "velocity")) << problem.describe();
+  EXPECT_TRUE(says(problem, "slide")) << problem.describe();
+  EXPECT_FALSE(problem.ways_out.empty());
+}
+
+TEST(UrdfDescription, RefusesMissingLimits) {
+  const Problem turning =
+      problem_of(with(kGood, R"(<limit lower="-2" upper="2" effort="1" velocity="1.5"/>)", ""));
+  EXPECT_TRUE(says(turning, "shoulder")) << turning.describe();
+  EXPECT_TRUE(says(turning, "velocity=")) << turning.describe();
+  const Problem endless = problem_of(with(kGood, R"(<limit effort="1" velocity="2"/>)", ""));
+  EXPECT_EQ(endless.code, ErrorCode::kBadLimits);
+  EXPECT_TRUE(says(endless, "elbow")) << endless.describe();
+}
+
+TEST(UrdfDescription, RefusesSwappedLimits) {
+  const Problem problem =
+      problem_of(with(kGood, R"(lower="-2" upper="2")", R"(lower="2" upper="-2")"));
+  EXPECT_EQ(problem.code, ErrorCode::kBadLimits);
+  EXPECT_TRUE(says(problem, "must be below"));
+}
+
+TEST(UrdfDescription, RefusesEmptyAndTruncatedFiles) {
+  EXPECT_TRUE(says(problem_of(""), "empty"));
+  EXPECT_TRUE(says(problem_of(" \n"), "empty"));
+  const std::string text = kGood;
+  for (size_t size = 1; size < text.size() - 1; size += 7) {
+    EXPECT_EQ(problem_of(text.substr(0, size)).code, ErrorCode::kBadRobot) << size;
+  }
+  EXPECT_EQ(problem_of("<model/>").code, ErrorCode::kBadRobot);
+}
+
+TEST(UrdfDescription, RefusesJointsItCannotMove) {
+  EXPECT_TRUE(
+      says(problem_of(with(kGood, "type=\"continuous\"", "type=\"floating\"")), "floating"));
+  const Problem mimic = problem_of(
+      with(kGood, "<axis xyz=\"1 0 0\"/>", "<axis xyz=\"1 0 0\"/><mimic joint=\"shoulder\"/>"));
+  EXPECT_TRUE(says(mimic, "mimics")) << mimic.describe();
+  const Problem still = problem_of(kGood, "base");
+  EXPECT_TRUE(says(still, "no moving joint")) << still.describe();
+}
+
+TEST(UrdfDescription, RefusesAnAxisWithoutDirection) {
+  EXPECT_TRUE(says(problem_of(with(kGood, "xyz=\"0 0 -2\"", "xyz=\"0 0 0\"")), "elbow"));
+}
+
+TEST(UrdfDescription, RoundTripsThroughYaml) {
+  const RobotDescription robot = description_from_urdf(kGood, "trio.urdf");
+  const RobotDescription again = description_from_yaml(to_yaml(robot), "again");
+  EXPECT_EQ(RobotModel::make(again)->fingerprint(), RobotModel::make(robot)->fingerprint());
+}
+
+TEST(UrdfDescription, SolvesPositionsOfAJointWithoutLimits) {
+  const RobotPtr robot = RobotModel::make(description_from_urdf(kGood, "trio.urdf"));
+  std::mt19937_64 generator(41);
+  std::uniform_real_distribution<double> unit(0.05, 0.95);
+  for (int problem = 0; problem < 500; ++problem) {
+    SCOPED_TRACE(problem);
+    const Eigen::Vector3d q(4.0 * unit(generator) - 2.0, 6.0 * unit(generator) - 3.0,
+                            0.4 * unit(generator));
+    const Eigen::Vector3d p = robot->fk(q).translation();
+    JointVector found;
+    ASSERT_NO_THROW(found = robot->inverse().solve_near(p, q));
+    ASSERT_TRUE(robot->limits().contains(found));
+    ASSERT_LT((robot->fk(found).translation() - p).norm(), 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace viapoint
