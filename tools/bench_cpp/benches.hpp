@@ -1,0 +1,14 @@
+/// @file
+/// The subcommands. Each prints one JSON object a case.
+#pragma once
+
+namespace viapoint::bench {
+
+/// Computing time of the interpolator's tick, in virtual time. @param ticks to measure a case
+void bench_tick(int ticks);
+/// Planning time a move. @param programs to plan a case
+void bench_plan(int programs);
+/// Time of the certificate a piece. @param programs whose motions are certified
+void bench_certificate(int programs);
+
+}  // namespace viapoint::bench

@@ -1,0 +1,33 @@
+/// @file
+/// One JSON object a line on standard output.
+#pragma once
+
+#include <iostream>
+#include <sstream>
+#include <string>
+#include <string_view>
+
+namespace viapoint::bench {
+
+/// Collects keys and prints the object when it goes out of scope. Keys and texts are plain words
+/// of this program: nothing in them needs escaping.
+class JsonLine {
+ public:
+  JsonLine(std::string_view bench, std::string_view subject) {
+    text_ << "{\"bench\": \"" << bench << "\", \"case\": \"" << subject << '"';
+  }
+  ~JsonLine() { std::cout << text_.str() << "}" << std::endl; }
+  JsonLine(const JsonLine&) = delete;
+  JsonLine& operator=(const JsonLine&) = delete;
+
+  template <typename Number>
+  JsonLine& add(std::string_view key, Number value) {
+    text_ << ", \"" << key << "\": " << value;
+    return *this;
+  }
+
+ private:
+  std::ostringstream text_;
+};
+
+}  // namespace viapoint::bench

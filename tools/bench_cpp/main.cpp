@@ -1,0 +1,55 @@
+#include <charconv>
+#include <exception>
+#include <iostream>
+#include <string_view>
+
+#include "benches.hpp"
+
+namespace {
+
+constexpr std::string_view kUsage =
+    "usage: viapoint-bench tick [TICKS] | plan [PROGRAMS] | certificate [PROGRAMS] | all\n"
+    "Prints one JSON object a line; times as its keys say.\n";
+
+constexpr int kTicks = 1'000'000;
+constexpr int kPrograms = 100;
+
+int count_of(int argc, char** argv, int otherwise) {
+  if (argc < 3) return otherwise;
+  const std::string_view text = argv[2];
+  int count = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), count);
+  return error == std::errc{} && end == text.data() + text.size() ? count : 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  using namespace viapoint::bench;
+  const std::string_view command = argc > 1 ? argv[1] : "";
+  const int count = count_of(argc, argv, command == "tick" ? kTicks : kPrograms);
+  if (argc > 3 || count < 1) {
+    std::cerr << kUsage;
+    return 2;
+  }
+  try {
+    if (command == "tick") {
+      bench_tick(count);
+    } else if (command == "plan") {
+      bench_plan(count);
+    } else if (command == "certificate") {
+      bench_certificate(count);
+    } else if (command == "all" && argc == 2) {
+      bench_tick(kTicks);
+      bench_plan(kPrograms);
+      bench_certificate(kPrograms);
+    } else {
+      std::cerr << kUsage;
+      return 2;
+    }
+  } catch (const std::exception& error) {
+    std::cerr << "viapoint-bench: " << error.what() << '\n';
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,19 @@
+/// @file
+/// Seeded programs for the PUMA 560.
+#pragma once
+
+#include <cstdint>
+
+#include "viapoint/kinematics/robot_model.hpp"
+#include "viapoint/program/motion_program.hpp"
+
+namespace viapoint::bench {
+
+/// `moves` joint moves between random points well inside the limits, blended within 0.05 rad, and
+/// back to the start.
+[[nodiscard]] MotionProgram random_ptp(const RobotModel& robot, int moves, std::uint64_t seed);
+/// `moves` straight lines between random poses in a box in front of the arm, the tool tilted by a
+/// few degrees, blended within 20 mm. Such a program can be impossible.
+[[nodiscard]] MotionProgram random_lin(const RobotModel& robot, int moves, std::uint64_t seed);
+
+}  // namespace viapoint::bench
