@@ -23,8 +23,8 @@ struct SampleArrays {
         qddd({count, joints}),
         move(count) {}
 
-  [[nodiscard]] py::dict dict() const {
-    py::dict out;
+  [[nodiscard]] Columns dict() const {
+    Columns out;
     out["t"] = t;
     out["q"] = q;
     out["qd"] = qd;
@@ -68,7 +68,7 @@ void require_pieces(const MotionHandle& motion) {
 }
 
 /// 0, dt, 2 dt, … and the exact end; the last step may be shorter.
-py::dict sample(const MotionHandle& motion, double dt) {
+Columns sample(const MotionHandle& motion, double dt) {
   require_pieces(motion);
   if (!(dt > 0.0) || !std::isfinite(dt)) {
     throw MotionError(ErrorCode::kBadArgument,
@@ -91,7 +91,7 @@ py::dict sample(const MotionHandle& motion, double dt) {
 }
 
 /// At the given instants [s], ascending; outside the motion the ends hold.
-py::dict sample_at(const MotionHandle& motion, const Vector& times) {
+Columns sample_at(const MotionHandle& motion, const Vector& times) {
   require_pieces(motion);
   const auto count = static_cast<py::ssize_t>(times.size());
   SampleArrays arrays(count, motion.trajectory->joints());

@@ -102,10 +102,12 @@ void bind_point_to_point(py::module_& m) {
         "The quickest move under an acceleration limit.");
   m.def(
       "rest_to_rest",
-      [](double distance, double velocity, double acceleration, double jerk) {
-        return AxisLaw(rest_to_rest(distance, velocity, acceleration, jerk));
+      [](double q0, double q1, double velocity, double acceleration, double jerk) {
+        JerkProfile profile = rest_to_rest(q1 - q0, velocity, acceleration, jerk);
+        profile.start.q = q0;
+        return AxisLaw(profile);
       },
-      py::arg("distance"), py::arg("velocity"), py::arg("acceleration"), py::arg("jerk"),
+      py::arg("q0"), py::arg("q1"), py::arg("velocity"), py::arg("acceleration"), py::arg("jerk"),
       "The quickest move under limits on velocity, acceleration and jerk.");
 }
 
@@ -139,13 +141,12 @@ void bind_through_points(py::module_& m) {
       py::arg("points"), py::arg("durations"), py::arg("accelerations"),
       "Linear segments with parabolic blends, durations given.");
   m.def(
-      "blended_lines_at_speed",
+      "durations_at_speed",
       [](const Array& points, const Array& speeds, const Array& accelerations) {
-        return blended_lines_at_speed(values_of(points), values_of(speeds),
-                                      values_of(accelerations));
+        return durations_at_speed(values_of(points), values_of(speeds), values_of(accelerations));
       },
       py::arg("points"), py::arg("speeds"), py::arg("accelerations"),
-      "Linear segments with parabolic blends, speeds given.");
+      "Durations with which the linear parts run at given speeds; 0 between equal points.");
   m.def("parabolic_blend", &parabolic_blend, py::arg("w0"), py::arg("w1"), py::arg("w2"),
         py::arg("before"), py::arg("after"), py::arg("half_width"),
         "Two lines and one parabolic blend of given half width.");

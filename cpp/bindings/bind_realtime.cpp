@@ -108,10 +108,10 @@ Array rows(const std::vector<LogRecord>& records, int joints, JointVector LogRec
   return out;
 }
 
-py::dict columns_of(const LogHandle& log) {
+Columns columns_of(const LogHandle& log) {
   const std::vector<LogRecord>& records = log.records;
   const int joints = log.joints;
-  py::dict out;
+  Columns out;
   out["cycle"] = column<std::uint64_t>(records, [](const LogRecord& r) { return r.cycle; });
   out["stamp"] = column<std::int64_t>(records, [](const LogRecord& r) { return r.stamp; });
   out["latency"] = column<std::int64_t>(records, [](const LogRecord& r) { return r.latency; });
@@ -127,6 +127,14 @@ py::dict columns_of(const LogHandle& log) {
   out["qddd"] = rows(records, joints, &LogRecord::qddd);
   out["measured"] = rows(records, joints, &LogRecord::measured);
   return out;
+}
+
+std::vector<std::string> run_states() {
+  std::vector<std::string> states;
+  for (int i = 0; i <= static_cast<int>(RunState::kFault); ++i) {
+    states.emplace_back(to_string(static_cast<RunState>(i)));
+  }
+  return states;
 }
 
 void bind_log(py::module_& m) {
@@ -226,11 +234,7 @@ void bind_realtime(py::module_& m) {
       },
       py::arg("motion"), py::arg("commands"), py::arg("cycle"),
       "The interpolator in virtual time: one record a cycle.");
-  std::vector<std::string> states;
-  for (int i = 0; i <= static_cast<int>(RunState::kFault); ++i) {
-    states.emplace_back(to_string(static_cast<RunState>(i)));
-  }
-  m.attr("RUN_STATES") = py::tuple(py::cast(states));
+  m.def("run_states", &run_states, "Every state's name, in the order of the C++ enum.");
 }
 
 }  // namespace viapoint::python

@@ -6,6 +6,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
+#include <pybind11/typing.h>
 
 #include <memory>
 #include <string>
@@ -25,6 +26,9 @@ namespace py = pybind11;
 
 /// A contiguous array of doubles, converted from whatever came.
 using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+/// Arrays by name, one row a sample.
+using Columns = py::typing::Dict<py::str, py::array>;
 
 /// An immutable robot, shared with every planner and motion made from it.
 struct RobotHandle {

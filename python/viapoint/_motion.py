@@ -68,12 +68,14 @@ class Motion:
     @property
     def start(self) -> Vector:
         """Joints where the motion begins, (n,) [rad or m]."""
-        return self.at([0.0]).q[0]
+        first: Vector = self.at([0.0]).q[0]
+        return first
 
     @property
     def end(self) -> Vector:
         """Joints where the motion ends, (n,) [rad or m]."""
-        return self.at([self.duration]).q[0]
+        last: Vector = self.at([self.duration]).q[0]
+        return last
 
     def sample(self, dt: float = CYCLE) -> Samples:
         """States at 0, dt, 2 dt, … and at the exact end (the last step may be shorter).

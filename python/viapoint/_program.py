@@ -347,11 +347,12 @@ class Program:
         position: ArrayLike | None,
         name: str = "target",
     ) -> _core.Target:
-        if (target is None) == (position is None):
-            given = "Neither" if target is None else "Both"
-            raise BadArgumentError(f"{given} {name} and position given; give one of them.")
         if position is not None:
+            if target is not None:
+                raise BadArgumentError(f"Both {name} and position are given; give one of them.")
             return _core.Target.position(vector(position, "position", 3, "x, y, z"))
+        if target is None:
+            raise BadArgumentError(f"Neither {name} nor position is given; give one of them.")
         array = numbers_of(target, name)
         if array.ndim == 2:
             matrix, correction = pose(array, name)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass, field, fields
+from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
@@ -64,7 +65,7 @@ class RunLog:
     robot: Robot = field(repr=False)
     core: _core.Log = field(repr=False)
 
-    STATES = _core.RUN_STATES
+    STATES: ClassVar[list[str]] = _core.run_states()
 
     def __len__(self) -> int:
         """Count the cycles."""

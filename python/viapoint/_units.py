@@ -12,7 +12,7 @@ Vector = npt.NDArray[np.float64]
 class Unit(float):
     """A factor to SI; times a list or tuple it gives an array."""
 
-    @overload  # type: ignore[override]  # float's own takes numbers only
+    @overload
     def __rmul__(self, other: float) -> float: ...
     @overload
     def __rmul__(self, other: Sequence[float] | Sequence[Sequence[float]]) -> Vector: ...
@@ -22,7 +22,7 @@ class Unit(float):
         """Scale a number, or every number of a list."""
         if isinstance(other, (list, tuple)):
             return np.asarray(other, dtype=np.float64) * float(self)
-        return super().__rmul__(other)  # type: ignore[operator, no-any-return]
+        return super().__rmul__(other)  # type: ignore[operator]
 
 
 deg = Unit(np.pi / 180.0)

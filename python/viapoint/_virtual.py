@@ -19,7 +19,7 @@ class VirtualExecution:
         self.duration = duration
         self._cycle = cycle
         columns = log.columns()
-        self.state: str = _core.RUN_STATES[int(columns["state"][-1])]
+        self.state: str = _core.run_states()[int(columns["state"][-1])]
         self.nominal_time = float(columns["nominal_time"][-1])
         self.move = int(columns["move"][-1])
         self.last = np.array(columns["q"][-1])
@@ -45,8 +45,17 @@ class VirtualExecution:
     def report(self) -> RunReport:
         """Count the cycles; virtual time has no latencies."""
         cycles = len(self._log)
-        none = [math.nan] * 6
-        return RunReport(cycles, 0, *none, wall_time=(cycles - 1) * self._cycle)
+        return RunReport(
+            cycles=cycles,
+            overruns=0,
+            latency_p50=math.nan,
+            latency_p99=math.nan,
+            latency_max=math.nan,
+            compute_p50=math.nan,
+            compute_p99=math.nan,
+            compute_max=math.nan,
+            wall_time=(cycles - 1) * self._cycle,
+        )
 
 
 class VirtualLoop:

@@ -70,7 +70,7 @@ class MotionError(Exception):
         Stable lower-case name, e.g. ``"joint_limit"``.
     message : str
         What was wrong and the allowed range.
-    ways_out : tuple of str
+    ways_out : list of str
         What would make it right.
     move : int or None
         Index of the move in its program, from 0.
@@ -105,7 +105,7 @@ class MotionError(Exception):
         limit: float | None = None,
     ) -> None:
         self.message = message
-        self.ways_out = tuple(ways_out)
+        self.ways_out = list(ways_out)
         self.move = move
         self.file = file
         self.line = line
@@ -122,7 +122,7 @@ class MotionError(Exception):
         return _core.Problem(
             self.code,
             self.message,
-            ways_out=list(self.ways_out),
+            ways_out=self.ways_out,
             move=self.move,
             file=self.file,
             line=self.line,

@@ -1,0 +1,790 @@
+"""
+The C++ core of viapoint. Use the package `viapoint`; this module is its private part.
+"""
+
+from __future__ import annotations
+
+import collections.abc
+import typing
+
+import numpy
+import numpy.typing
+
+from . import profile
+
+__all__: list[str] = [
+    "ANGLE_TOLERANCE",
+    "Certificate",
+    "ControllerLoop",
+    "Corner",
+    "Extremum",
+    "Job",
+    "JointLimits",
+    "Log",
+    "MAX_JOINTS",
+    "MotionProgram",
+    "MoveOptions",
+    "POSITION_TOLERANCE",
+    "PlannedMotion",
+    "Problem",
+    "ROTATION_ROUNDING",
+    "RobotModel",
+    "RunReport",
+    "Singularity",
+    "Target",
+    "admit",
+    "builtin_robots",
+    "check",
+    "checked_pose",
+    "error_codes",
+    "joint_robot",
+    "load_program",
+    "load_robot",
+    "plan",
+    "profile",
+    "program_from_json",
+    "read_file",
+    "rotation_exp",
+    "rotation_log",
+    "run_states",
+    "simulate",
+    "write_file_atomically",
+]
+
+class Problem:
+    """
+    One thing that is wrong; fields that do not apply are None.
+    """
+    def __init__(
+        self,
+        code: str,
+        message: str,
+        *,
+        ways_out: collections.abc.Sequence[str] = [],
+        warning: bool = False,
+        move: typing.SupportsInt | typing.SupportsIndex | None = None,
+        file: str = "",
+        line: typing.SupportsInt | typing.SupportsIndex | None = None,
+        joint: typing.SupportsInt | typing.SupportsIndex | None = None,
+        time: typing.SupportsFloat | typing.SupportsIndex | None = None,
+        share: typing.SupportsFloat | typing.SupportsIndex | None = None,
+        value: typing.SupportsFloat | typing.SupportsIndex | None = None,
+        limit: typing.SupportsFloat | typing.SupportsIndex | None = None,
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    def __str__(self) -> str: ...
+    def describe(self) -> str:
+        """
+        Where, what and the ways out, in one text.
+        """
+    @property
+    def code(self) -> str:
+        """
+        Stable lower-case name, e.g. "joint_limit".
+        """
+    @property
+    def file(self) -> str:
+        """
+        Source of the move, or the file that was read.
+        """
+    @property
+    def joint(self) -> int | None:
+        """
+        Joint, from 0.
+        """
+    @property
+    def limit(self) -> float | None:
+        """
+        What it was held against [SI, rad].
+        """
+    @property
+    def line(self) -> int | None:
+        """
+        Line in `file`, from 1.
+        """
+    @property
+    def message(self) -> str:
+        """
+        What was wrong and the allowed range.
+        """
+    @property
+    def move(self) -> int | None:
+        """
+        Index of the move in its program, from 0.
+        """
+    @property
+    def share(self) -> float | None:
+        """
+        Share of the leg where it happens, 0 to 1.
+        """
+    @property
+    def time(self) -> float | None:
+        """
+        [s] from the motion's start.
+        """
+    @property
+    def value(self) -> float | None:
+        """
+        The offending value [SI, rad].
+        """
+    @property
+    def warning(self) -> bool:
+        """
+        True for a warning, False for an error.
+        """
+    @property
+    def ways_out(self) -> list[str]:
+        """
+        What would make it right.
+        """
+
+class JointLimits:
+    """
+    What each joint may do [SI, rad].
+
+    position_min <= q <= position_max, |qd| <= velocity, |qdd| <= acceleration, |qddd| <= jerk,
+    coupling_lower <= coupling @ q <= coupling_upper. Arrays are copies: a robot's limits never change
+    (see Robot.with_limits).
+    """
+    def __init__(
+        self,
+        *,
+        position_min: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        position_max: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        acceleration: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        jerk: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        coupling: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, n]"],
+        coupling_lower: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        coupling_upper: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    ) -> None: ...
+    def contains(
+        self,
+        q: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        slack: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+    ) -> bool:
+        """
+        True when every position and coupled limit holds at q (n,), within slack [rad or m].
+        """
+    @property
+    def acceleration(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (n,)
+        """
+    @property
+    def coupling(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]:
+        """
+        (m, n)
+        """
+    @property
+    def coupling_lower(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (m,)
+        """
+    @property
+    def coupling_upper(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (m,)
+        """
+    @property
+    def jerk(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (n,)
+        """
+    @property
+    def position_max(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (n,)
+        """
+    @property
+    def position_min(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (n,)
+        """
+    @property
+    def velocity(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (n,)
+        """
+
+class Singularity:
+    """
+    How near the arm is to losing a direction.
+    """
+    def __repr__(self) -> str: ...
+    @property
+    def distance(self) -> float:
+        """
+        To the nearest singularity [rad or m].
+        """
+    @property
+    def manipulability(self) -> float:
+        """
+        sqrt(det(J J^T)).
+        """
+    @property
+    def name(self) -> str:
+        """
+        "none", "shoulder", "elbow", "wrist" or "boundary".
+        """
+
+class RobotModel:
+    """
+    An arm: chain, limits and kinematics.
+    """
+    def fk(
+        self, q: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[4, 4]"]: ...
+    def fk_batch(
+        self, q: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]
+    ) -> numpy.typing.NDArray[numpy.float64]: ...
+    def ik_all(
+        self, pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[4, 4]"]
+    ) -> numpy.typing.NDArray[numpy.float64]: ...
+    def ik_all_position(
+        self, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]
+    ) -> numpy.typing.NDArray[numpy.float64]: ...
+    def ik_near(
+        self,
+        pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[4, 4]"],
+        near: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
+    def ik_near_position(
+        self,
+        position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"],
+        near: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
+    def jacobian(
+        self, q: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
+    ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
+    def manipulability(
+        self, q: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
+    ) -> float: ...
+    def singularity(
+        self, q: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
+    ) -> Singularity: ...
+    def tool_rates(
+        self,
+        q: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+        qd: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+        qdd: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+    ) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]: ...
+    def with_limits(self, limits: JointLimits) -> RobotModel: ...
+    @property
+    def chosen(self) -> list[str]: ...
+    @property
+    def fingerprint(self) -> str: ...
+    @property
+    def has_kinematics(self) -> bool: ...
+    @property
+    def ik_family(self) -> str:
+        """
+        Which inverse-kinematics solver serves this arm, and why.
+        """
+    @property
+    def joint_names(self) -> list[str]: ...
+    @property
+    def joints(self) -> int: ...
+    @property
+    def limits(self) -> JointLimits: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def prismatic(self) -> list[bool]: ...
+    @property
+    def sources(self) -> list[str]: ...
+    @property
+    def title(self) -> str: ...
+
+class Target:
+    """
+    Where a move goes.
+    """
+    @staticmethod
+    def joints(q: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]) -> Target: ...
+    @staticmethod
+    def pose(
+        pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[4, 4]"],
+        correction: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+    ) -> Target:
+        """
+        A pose, and how far the matrix it was given as was from a rotation.
+        """
+    @staticmethod
+    def position(
+        position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"],
+    ) -> Target: ...
+
+class MoveOptions:
+    """
+    Wishes of one move.
+    """
+    def __init__(
+        self,
+        *,
+        speed: typing.SupportsFloat | typing.SupportsIndex | None = None,
+        acceleration: typing.SupportsFloat | typing.SupportsIndex | None = None,
+        scale: typing.SupportsFloat | typing.SupportsIndex | None = None,
+        zone: str = "fine",
+        size: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+    ) -> None: ...
+
+class MotionProgram:
+    """
+    Moves, waits and outputs, in order.
+    """
+    def __init__(
+        self,
+        robot: RobotModel,
+        start: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    ) -> None: ...
+    def __len__(self) -> int: ...
+    def add_movej(
+        self,
+        target: Target,
+        options: MoveOptions,
+        file: str,
+        line: typing.SupportsInt | typing.SupportsIndex,
+    ) -> None: ...
+    def add_movel(
+        self,
+        target: Target,
+        orientation: str,
+        options: MoveOptions,
+        file: str,
+        line: typing.SupportsInt | typing.SupportsIndex,
+    ) -> None: ...
+    def add_set_do(
+        self,
+        index: typing.SupportsInt | typing.SupportsIndex,
+        value: bool,
+        file: str,
+        line: typing.SupportsInt | typing.SupportsIndex,
+    ) -> None: ...
+    def add_timed(
+        self,
+        points: collections.abc.Sequence[
+            tuple[Target, typing.SupportsFloat | typing.SupportsIndex]
+        ],
+        t_acc: typing.SupportsFloat | typing.SupportsIndex,
+        space: str,
+        file: str,
+        line: typing.SupportsInt | typing.SupportsIndex,
+    ) -> None: ...
+    def add_wait(
+        self,
+        seconds: typing.SupportsFloat | typing.SupportsIndex,
+        file: str,
+        line: typing.SupportsInt | typing.SupportsIndex,
+    ) -> None: ...
+    def kind(self, step: typing.SupportsInt | typing.SupportsIndex) -> str:
+        """
+        "movej", "movel", "wait", "set_do" or "timed".
+        """
+    def save(self, path: str) -> None: ...
+    def source(self, step: typing.SupportsInt | typing.SupportsIndex) -> tuple[str, int]:
+        """
+        File and line (from 1; 0 where unknown) of a step.
+        """
+    def targets(
+        self,
+    ) -> list[tuple[int, str, typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]]]:
+        """
+        Step, kind of target and its array, for every target.
+        """
+    def to_json(self) -> str: ...
+    @property
+    def robot(self) -> str: ...
+    @property
+    def robot_fingerprint(self) -> str: ...
+    @property
+    def start(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
+
+class Extremum:
+    """
+    The worst of one quantity of one joint.
+    """
+    def __repr__(self) -> str: ...
+    @property
+    def move(self) -> int:
+        """
+        Program step it happens in.
+        """
+    @property
+    def share(self) -> float:
+        """
+        Value over its limit.
+        """
+    @property
+    def time(self) -> float:
+        """
+        Where [s].
+        """
+    @property
+    def value(self) -> float:
+        """
+        Largest magnitude [SI, rad].
+        """
+
+class Certificate:
+    """
+    Proven bounds over a whole motion.
+    """
+    @property
+    def acceleration(self) -> list[Extremum]:
+        """
+        One Extremum a joint.
+        """
+    @property
+    def acceleration_jump(self) -> float: ...
+    @property
+    def acceleration_share(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (n,) worst share of the acceleration limit
+        """
+    @property
+    def angle_deviation(self) -> float:
+        """
+        Proven, outside zones [rad].
+        """
+    @property
+    def end_acceleration(self) -> float: ...
+    @property
+    def end_speed(self) -> float:
+        """
+        Largest |qd| at the end.
+        """
+    @property
+    def holds(self) -> bool:
+        """
+        True when the motion may run.
+        """
+    @property
+    def jerk(self) -> list[Extremum]:
+        """
+        One Extremum a joint.
+        """
+    @property
+    def jerk_share(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (n,) worst share of the jerk limit
+        """
+    @property
+    def manipulability(self) -> float:
+        """
+        Smallest found along the motion.
+        """
+    @property
+    def path_deviation(self) -> float:
+        """
+        Proven, outside zones [m].
+        """
+    @property
+    def position_jump(self) -> float:
+        """
+        Largest step between pieces.
+        """
+    @property
+    def position_max(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (n,) largest joint position reached [rad or m]
+        """
+    @property
+    def position_min(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (n,) least joint position reached [rad or m]
+        """
+    @property
+    def problems(self) -> list[Problem]:
+        """
+        Everything that is broken, worst first.
+        """
+    @property
+    def start_acceleration(self) -> float: ...
+    @property
+    def start_speed(self) -> float:
+        """
+        Largest |qd| at the start.
+        """
+    @property
+    def velocity(self) -> list[Extremum]:
+        """
+        One Extremum a joint.
+        """
+    @property
+    def velocity_jump(self) -> float: ...
+    @property
+    def velocity_share(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        (n,) worst share of the velocity limit
+        """
+    @property
+    def zone_deviation(self) -> float:
+        """
+        Largest cut of a corner at the tool [m].
+        """
+
+class Corner:
+    """
+    What became of the zone of one move.
+    """
+    def __repr__(self) -> str: ...
+    @property
+    def asked(self) -> float:
+        """
+        Size asked for.
+        """
+    @property
+    def cut(self) -> float:
+        """
+        Proven largest distance from the legs [m].
+        """
+    @property
+    def kind(self) -> str:
+        """
+        "fine", "radius", "deviation" or "joint_deviation".
+        """
+    @property
+    def move(self) -> int:
+        """
+        Index of the move, from 0.
+        """
+    @property
+    def reason(self) -> str:
+        """
+        Why shrunk or stopped.
+        """
+    @property
+    def stopped(self) -> bool:
+        """
+        The arm stops at the point.
+        """
+    @property
+    def used(self) -> float:
+        """
+        Size really used, in the zone's own unit.
+        """
+
+class PlannedMotion:
+    """
+    A finished motion and its proof.
+    """
+    def sample(
+        self, dt: typing.SupportsFloat | typing.SupportsIndex
+    ) -> dict[str, numpy.ndarray]: ...
+    def sample_at(
+        self, times: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
+    ) -> dict[str, numpy.ndarray]: ...
+    @property
+    def certificate(self) -> Certificate: ...
+    @property
+    def corners(self) -> list[Corner]: ...
+    @property
+    def duration(self) -> float: ...
+    @property
+    def joints(self) -> int: ...
+    @property
+    def pieces(self) -> int: ...
+    @property
+    def problems(self) -> list[Problem]: ...
+
+class Log:
+    """
+    Every cycle of a run as it was executed.
+    """
+    def __len__(self) -> int: ...
+    def columns(self) -> dict[str, numpy.ndarray]:
+        """
+        A dict of arrays, one row a cycle.
+        """
+    def save_csv(self, path: str) -> None:
+        """
+        Writes the same table as viapoint-controller --log.
+        """
+
+class RunReport:
+    """
+    Figures of one run; times in seconds.
+    """
+    @property
+    def compute_max(self) -> float: ...
+    @property
+    def compute_p50(self) -> float: ...
+    @property
+    def compute_p99(self) -> float: ...
+    @property
+    def cycles(self) -> int: ...
+    @property
+    def latency_max(self) -> float: ...
+    @property
+    def latency_p50(self) -> float: ...
+    @property
+    def latency_p99(self) -> float: ...
+    @property
+    def overruns(self) -> int:
+        """
+        Cycles that woke a whole cycle late or more.
+        """
+    @property
+    def wall_time(self) -> float:
+        """
+        First to last cycle.
+        """
+
+class Job:
+    """
+    One motion under way.
+    """
+    def log(self) -> Log: ...
+    def pause(self) -> None: ...
+    def report(self) -> RunReport: ...
+    def resume(self) -> None: ...
+    def stop(self) -> None: ...
+    def wait(self, timeout: typing.SupportsFloat | typing.SupportsIndex) -> bool: ...
+    @property
+    def duration(self) -> float: ...
+    @property
+    def move(self) -> int: ...
+    @property
+    def nominal_time(self) -> float: ...
+    @property
+    def overruns(self) -> int: ...
+    @property
+    def state(self) -> str: ...
+
+class ControllerLoop:
+    """
+    The 2 ms loop over a simulated drive.
+    """
+    def __init__(
+        self,
+        robot: RobotModel,
+        start: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        *,
+        cycle: typing.SupportsFloat | typing.SupportsIndex,
+        priority: typing.SupportsInt | typing.SupportsIndex,
+        lock_memory: bool,
+    ) -> None: ...
+    def close(self) -> None: ...
+    def run(self, motion: PlannedMotion) -> Job: ...
+    @property
+    def busy(self) -> bool: ...
+    @property
+    def is_open(self) -> bool: ...
+    @property
+    def measured(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
+    @property
+    def override(self) -> float: ...
+    @override.setter
+    def override(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
+    def position(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
+    @property
+    def shortcomings(self) -> list[str]: ...
+
+def admit(
+    motion: PlannedMotion,
+    position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+) -> None:
+    """
+    Raises the first reason why the motion must not run from `position`.
+    """
+
+def builtin_robots() -> list[str]:
+    """
+    Names of the built-in robots, sorted.
+    """
+
+def check(
+    robot: RobotModel,
+    program: MotionProgram,
+    position_tolerance: typing.SupportsFloat | typing.SupportsIndex,
+    angle_tolerance: typing.SupportsFloat | typing.SupportsIndex,
+) -> list[Problem]:
+    """
+    Every problem of a program, in program order.
+    """
+
+def checked_pose(
+    matrix: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[4, 4]"],
+) -> tuple[typing.Annotated[numpy.typing.NDArray[numpy.float64], "[4, 4]"], float]:
+    """
+    The pose with its rotation made exact, and the largest element by which it was changed.
+    """
+
+def error_codes() -> list[str]:
+    """
+    Every error code's name, in the order of the C++ enum.
+    """
+
+def joint_robot(limits: JointLimits) -> RobotModel:
+    """
+    Joints with limits and no kinematics.
+    """
+
+def load_program(path: str) -> MotionProgram: ...
+def load_robot(name_or_path: str) -> RobotModel:
+    """
+    A built-in robot by name, or a .yaml or .urdf file.
+    """
+
+def plan(
+    robot: RobotModel,
+    program: MotionProgram,
+    position_tolerance: typing.SupportsFloat | typing.SupportsIndex,
+    angle_tolerance: typing.SupportsFloat | typing.SupportsIndex,
+) -> PlannedMotion:
+    """
+    Plans; raises the first error of the report.
+    """
+
+def program_from_json(text: str, source: str) -> MotionProgram: ...
+def read_file(path: str) -> str:
+    """
+    The whole text of a file.
+    """
+
+def rotation_exp(
+    vector: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"],
+) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 3]"]:
+    """
+    Rotation matrix of a rotation vector [rad].
+    """
+
+def rotation_log(
+    rotation: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 3]"],
+) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+    """
+    Rotation vector [rad] of a rotation matrix.
+    """
+
+def run_states() -> list[str]:
+    """
+    Every state's name, in the order of the C++ enum.
+    """
+
+def simulate(
+    motion: PlannedMotion,
+    commands: collections.abc.Sequence[
+        tuple[
+            typing.SupportsFloat | typing.SupportsIndex,
+            str,
+            typing.SupportsFloat | typing.SupportsIndex,
+        ]
+    ],
+    cycle: typing.SupportsFloat | typing.SupportsIndex,
+) -> Log:
+    """
+    The interpolator in virtual time: one record a cycle.
+    """
+
+def write_file_atomically(path: str, content: str) -> None:
+    """
+    Writes a whole file: a crash leaves the old content or the new, never a part.
+    """
+
+ANGLE_TOLERANCE: float = 0.00017453292519943296
+MAX_JOINTS: int = 16
+POSITION_TOLERANCE: float = 5e-05
+ROTATION_ROUNDING: float = 0.02
+__version__: str = "0.1.0"

@@ -1,0 +1,103 @@
+"""What the command line says and keeps of a run: the table, the log and the pictures."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from pathlib import Path
+
+import numpy as np
+from rich.table import Table
+
+from ._job import Job
+from ._motion import Motion
+from ._plots import DRAWINGS, drawings_for, save_figure, save_plot
+
+
+def file_stem(script: Path, motion: Motion, taken: set[str]) -> str:
+    """Name the files of a motion after script and program, never the same twice."""
+    program = re.sub(r"[^\w.-]+", "_", motion.program.name.strip()).strip("_")
+    base = script.stem if program in ("", "program") else f"{script.stem}_{program}"
+    stem, count = base, 1
+    while stem in taken:
+        count += 1
+        stem = f"{base}_{count}"
+    taken.add(stem)
+    return stem
+
+
+def run_table(job: Job) -> Table:
+    """Figures of one run."""
+    report = job.report
+    certificate = job.motion.certificate
+    table = Table(title=f"{job.motion.program.name}: {job.state}", title_justify="left")
+    table.add_column("measured")
+    table.add_column("value", justify="right")
+    table.add_row("duration, planned", f"{job.duration:.4f} s")
+    table.add_row("wall time, first to last cycle", f"{report.wall_time:.4f} s")
+    for name, shares in _shares(job.motion):
+        cells = "  ".join(f"{100.0 * share:5.1f}" for share in shares)
+        table.add_row(f"worst {name}, % of the limit, joint 1…{len(shares)}", cells)
+    table.add_row("path deviation, proven", f"{1e3 * certificate.path_deviation:.4f} mm")
+    table.add_row("corner cut, proven", f"{1e3 * certificate.zone_deviation:.2f} mm")
+    table.add_row("cycles / overruns", f"{report.cycles} / {report.overruns}")
+    if not np.isnan(report.latency_p50):
+        table.add_row(
+            "wake-up latency p50 / p99 / max",
+            _microseconds(report.latency_p50, report.latency_p99, report.latency_max),
+        )
+        table.add_row(
+            "computing a cycle p50 / p99 / max",
+            _microseconds(report.compute_p50, report.compute_p99, report.compute_max),
+        )
+    return table
+
+
+def motion_table(motion: Motion) -> Table:
+    """Figures of a motion that was planned and not run."""
+    table = Table(title=f"{motion.program.name}: planned", title_justify="left")
+    table.add_column("proven")
+    table.add_column("value", justify="right")
+    table.add_row("duration", f"{motion.duration:.4f} s")
+    for name, shares in _shares(motion):
+        cells = "  ".join(f"{100.0 * share:5.1f}" for share in shares)
+        table.add_row(f"worst {name}, % of the limit, joint 1…{len(shares)}", cells)
+    return table
+
+
+def write_run(job: Job, folder: Path, stem: str) -> list[Path]:
+    """Write the log (CSV and npz) and the pictures of what was executed."""
+    folder.mkdir(parents=True, exist_ok=True)
+    log = job.log
+    files = [folder / f"{stem}.csv", folder / f"{stem}.npz"]
+    log.save_csv(files[0])
+    log.save_npz(files[1])
+    samples = log.samples
+    for what in drawings_for(job.motion):
+        picture = folder / f"{stem}_{what}.png"
+        save_figure(DRAWINGS[what](samples, job.motion), picture)
+        files.append(picture)
+    return files
+
+
+def write_pictures(motion: Motion, folder: Path, stem: str) -> list[Path]:
+    """Write the pictures of a planned motion."""
+    folder.mkdir(parents=True, exist_ok=True)
+    files = []
+    for what in drawings_for(motion):
+        files.append(folder / f"{stem}_{what}.png")
+        save_plot(motion, files[-1], what)
+    return files
+
+
+def _shares(motion: Motion) -> Iterable[tuple[str, np.ndarray]]:
+    certificate = motion.certificate
+    return (
+        ("velocity", certificate.velocity_share),
+        ("acceleration", certificate.acceleration_share),
+        ("jerk", certificate.jerk_share),
+    )
+
+
+def _microseconds(*seconds: float) -> str:
+    return " / ".join(f"{1e6 * value:.1f}" for value in seconds) + " µs"
