@@ -11,11 +11,13 @@
 namespace viapoint {
 namespace {
 
-constexpr int kIterations = 60;     ///< steps of one descent
-constexpr int kStarts = 60;         ///< descents before a pose is given up
-constexpr int kSearchStarts = 200;  ///< descents when every branch is wanted
-constexpr int kIdleStarts = 40;     ///< descents in a row that find nothing new end that search
-constexpr int kNearStarts = 24;     ///< descents that look for a nearer branch
+constexpr int kIterations = 60;        ///< steps of one descent
+constexpr int kPatience = 12;          ///< steps without progress that end a descent
+constexpr int kMissIterations = 2000;  ///< of the one that measures how far a pose is out of reach
+constexpr int kStarts = 60;            ///< descents before a pose is given up
+constexpr int kSearchStarts = 200;     ///< descents when every branch is wanted
+constexpr int kIdleStarts = 40;        ///< descents in a row that find nothing new end that search
+constexpr int kNearStarts = 24;        ///< descents that look for a nearer branch
 constexpr double kNearEnough =
     0.35;                          ///< a change of every joint below this needs no such look [rad]
 constexpr double kDamping = 0.02;  ///< λ = this · ‖e‖²
@@ -85,8 +87,8 @@ bool NumericalInverse::redundant(const Task& task) const {
   return forward_.joints() > rows;
 }
 
-NumericalInverse::Descent NumericalInverse::descend(const Task& task, JointVector q,
-                                                    bool bounded) const {
+NumericalInverse::Descent NumericalInverse::descend(const Task& task, JointVector q, bool bounded,
+                                                    int iterations, int patience) const {
   using Square = JointMatrix;
   const int joints = forward_.joints();
   const int rows = task.position_only ? 3 : 6;
@@ -94,7 +96,9 @@ NumericalInverse::Descent NumericalInverse::descend(const Task& task, JointVecto
   Descent best{q, {1e300, 1e300}};
   double least = 1e300;
   int idle = 0;
-  for (int iteration = 0; iteration < kIterations; ++iteration) {
+  double caution = 1.0;  // more damping while the error grows: a goal out of reach bends the valley
+  double before = 1e300;
+  for (int iteration = 0; iteration < iterations; ++iteration) {
     const ChainFrames frames = forward_.frames(q);
     Twist miss;
     miss.head<3>() = task.goal.translation() - frames.pose_base_tool.translation();
@@ -112,11 +116,13 @@ NumericalInverse::Descent NumericalInverse::descend(const Task& task, JointVecto
       best = {q, now};
     }
     const bool solved = best.error.within(kPoseTolerance);
-    if (now.within(kDone) || idle >= (solved ? 2 : 12)) break;
+    if (now.within(kDone) || idle >= (solved ? 2 : patience)) break;
 
     Jacobian jacobian = forward_.jacobian(frames);
     jacobian.topRows<3>() /= length_;
-    const double damping = kDamping * square + kDampingFloor;
+    caution = square > before ? std::min(4.0 * caution, 1e6) : std::max(0.7 * caution, 1.0);
+    before = square;
+    const double damping = kDamping * caution * square + kDampingFloor;
     JointVector step(joints);
     // A joint on its limit that would go on outwards is held, and the others solve without it.
     for (int pass = 0; pass < joints; ++pass) {
@@ -175,11 +181,13 @@ NumericalInverse::Search NumericalInverse::search(const Task& task, const JointV
   for (int index = 0; index < starts && idle < kIdleStarts; ++index) {
     // The reference itself is tried both ways, then the sequence.
     const bool bounded = index % 2 == 1;
-    const Descent end = descend(task, index < 2 ? reference : start(index), bounded);
+    const Descent end =
+        descend(task, index < 2 ? reference : start(index), bounded, kIterations, kPatience);
     if (!end.error.within(kPoseTolerance)) {
       if (end.error.position + length_ * end.error.angle <
           found.least.position + length_ * found.least.angle) {
         found.least = end.error;
+        found.nearest = end.q;
       }
       continue;
     }
@@ -227,12 +235,15 @@ void NumericalInverse::refuse(const Task& task, const Search& search_result) con
   if (!search_result.outside.empty()) {
     refuse_outside_limits(forward_, turns_, search_result.outside);
   }
-  if (task.position_only) {
-    refuse_unreachable("the position", search_result.least.position);
-  }
+  // Beyond the boundary the descent creeps, so the distance gets a long one of its own.
+  const auto measured = [&](const Search& miss) {
+    return descend({task.goal, true}, miss.nearest, false, kMissIterations, kMissIterations)
+        .error.position;
+  };
+  if (task.position_only) refuse_unreachable("the position", measured(search_result));
   const Search place = search({task.goal, true}, JointVector::Zero(forward_.joints()), kStarts, 1);
   if (place.inside.empty() && place.outside.empty()) {
-    refuse_unreachable("the position of the pose", place.least.position);
+    refuse_unreachable("the position of the pose", measured(place));
   }
   const PoseError least = search_result.least;
   const std::string miss = "the nearest found is " + std::to_string(least.position) + " m and " +
@@ -295,9 +306,13 @@ JointVector NumericalInverse::solve_near_unlimited(const Pose& pose_base_tool,
   const Task task{pose_base_tool, false};
   Search found;
   for (int index = 0; index < kStarts; ++index) {
-    const Descent end = descend(task, index == 0 ? reference : start(index), false);
+    const Descent end =
+        descend(task, index == 0 ? reference : start(index), false, kIterations, kPatience);
     if (end.error.within(kPoseTolerance)) return turns_.unlimited(end.q, reference);
-    if (end.error.position < found.least.position) found.least = end.error;
+    if (end.error.position < found.least.position) {
+      found.least = end.error;
+      found.nearest = end.q;
+    }
   }
   refuse(task, found);
 }

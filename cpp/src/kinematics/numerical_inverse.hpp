@@ -44,11 +44,14 @@ class NumericalInverse final : public InverseKinematics {
   struct Search {
     std::vector<JointVector> inside;   ///< distinct branches within the limits
     std::vector<JointVector> outside;  ///< distinct branches that are not
-    PoseError least{1e300, 1e300};     ///< nearest miss, by position
+    PoseError least{1e300, 1e300};     ///< nearest miss
+    JointVector nearest;               ///< where that was
   };
 
   [[nodiscard]] PoseError error(const Task& task, const JointVector& q) const;
-  [[nodiscard]] Descent descend(const Task& task, JointVector q, bool bounded) const;
+  /// @param patience steps without progress that end it
+  [[nodiscard]] Descent descend(const Task& task, JointVector q, bool bounded, int iterations,
+                                int patience) const;
   /// @param reference the turn nearest to it is kept; @param enough stop at so many branches
   [[nodiscard]] Search search(const Task& task, const JointVector& reference, int starts,
                               size_t enough) const;
