@@ -1,4 +1,4 @@
-"""What the documents say is so: their scripts run, their links lead somewhere, their lists are whole."""
+"""The documents tell the truth: scripts run, links lead somewhere, lists are whole."""
 
 import os
 import re
