@@ -114,7 +114,9 @@ class Law:
 
     def __repr__(self) -> str:
         """Name the kind, the axes and the time."""
-        return f"<{type(self).__name__} of {len(self._axes)} axes, {self.start:g} to {self.end:g} s>"
+        return (
+            f"<{type(self).__name__} of {len(self._axes)} axes, {self.start:g} to {self.end:g} s>"
+        )
 
 
 class Trapezoid(Law):
@@ -230,6 +232,7 @@ def point_columns(points: ArrayLike, name: str = "points") -> tuple[tuple[int, .
         raise BadArgumentError(f"{name} has the shape {array.shape}; it must be (k,) or (k, n).")
     shape: tuple[int, ...] = array.shape[1:]
     return shape, array.reshape(array.shape[0], -1)
+
 
 def values_by_axis(value: ArrayLike, name: str, shape: tuple[int, ...], rows: int) -> list[Vector]:
     """Return for each axis what the core takes: (1,), or (rows,).

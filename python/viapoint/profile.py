@@ -397,4 +397,3 @@ def quartic_transitions(points: ArrayLike, durations: ArrayLike, t_acc: float) -
     half = number(t_acc, "t_acc", "s")
     made = for_each_axis(shape, lambda i: _laws.quartic_transitions(columns[:, i], times, half))
     return Law(made, shape)
-

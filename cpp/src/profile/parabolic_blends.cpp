@@ -165,25 +165,23 @@ BlendedLines blended_lines(std::span<const double> points, std::span<const doubl
           timing.linear};
 }
 
-BlendedLines blended_lines_at_speed(std::span<const double> points, std::span<const double> speeds,
-                                    std::span<const double> accelerations) {
+std::vector<double> durations_at_speed(std::span<const double> points,
+                                       std::span<const double> speeds,
+                                       std::span<const double> accelerations) {
   require_segments(points.size(), speeds.size() == 1 ? points.size() - 1 : speeds.size(), "speeds");
   require_finite(points, "points");
   require_positive(speeds, "speeds");
   require_accelerations(points.size(), accelerations);
+  const auto magnitude = [&](size_t k) { return accelerations[accelerations.size() == 1 ? 0 : k]; };
   std::vector<double> durations;
   for (size_t i = 0; i + 1 < points.size(); ++i) {
     const double gap = std::abs(points[i + 1] - points[i]);
     const double speed = speeds[speeds.size() == 1 ? 0 : i];
     if (!(gap > 0.0)) {
-      refuse("points " + std::to_string(i) + " and " + std::to_string(i + 1) +
-                 " are equal, so no speed gives the segment between them a duration",
-             gap, 0.0, {"leave one of them out", "give durations in place of speeds"});
+      durations.push_back(0.0);
+      continue;
     }
     const bool first = i == 0, last = i + 2 == points.size();
-    const auto magnitude = [&](size_t k) {
-      return accelerations[accelerations.size() == 1 ? 0 : k];
-    };
     const int ends = (first ? 1 : 0) + (last ? 1 : 0);
     const double a =
         ends == 2 ? std::min(magnitude(0), magnitude(1)) : magnitude(first ? 0 : i + 1);
@@ -194,8 +192,19 @@ BlendedLines blended_lines_at_speed(std::span<const double> points, std::span<co
                  " with an acceleration of " + written(a) + "; it must be at most " + written(most),
              speed, most, {"give a smaller speed", "give a larger acceleration"});
     }
-    const double duration = gap / speed + 0.5 * ends * speed / a;
-    durations.push_back(duration);
+    durations.push_back(gap / speed + 0.5 * ends * speed / a);
+  }
+  return durations;
+}
+
+BlendedLines blended_lines_at_speed(std::span<const double> points, std::span<const double> speeds,
+                                    std::span<const double> accelerations) {
+  const std::vector<double> durations = durations_at_speed(points, speeds, accelerations);
+  for (size_t i = 0; i < durations.size(); ++i) {
+    if (durations[i] > 0.0) continue;
+    refuse("points " + std::to_string(i) + " and " + std::to_string(i + 1) +
+               " are equal, so no speed gives the segment between them a duration",
+           0.0, 0.0, {"leave one of them out", "give durations in place of speeds"});
   }
   return blended_lines(points, durations, accelerations);
 }

@@ -31,11 +31,18 @@ struct BlendedLines {
                                          std::span<const double> durations,
                                          std::span<const double> accelerations);
 
-/// Durations computed so that every linear part runs at its given speed:
-/// |Δq|/v, and half a blend v/(2a) more for each end of the motion in the segment.
+/// Durations with which every linear part runs at its given speed: |Δq|/v, and half a blend v/(2a)
+/// more for each end of the motion in the segment; 0 between equal points. For several axes take
+/// the largest of each segment. Returns (k − 1,) [s].
 /// @param speeds magnitude of the linear velocities, (k − 1,), or (1,) for all [1/s]
-/// @throws MotionError(kBadArgument) as above, for two equal points in a row (no speed gives them a
-/// duration), and for a speed that the end blends cannot reach within the segment
+/// @throws MotionError(kBadArgument) as above, and for a speed that an end blend cannot reach
+/// within its segment; the message names the largest that it can
+[[nodiscard]] std::vector<double> durations_at_speed(std::span<const double> points,
+                                                     std::span<const double> speeds,
+                                                     std::span<const double> accelerations);
+
+/// blended_lines() with durations_at_speed(). @throws MotionError(kBadArgument) as both, and for
+/// two equal points in a row (no speed gives them a duration)
 [[nodiscard]] BlendedLines blended_lines_at_speed(std::span<const double> points,
                                                   std::span<const double> speeds,
                                                   std::span<const double> accelerations);
