@@ -1,0 +1,219 @@
+#include "viapoint/path/corner.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+
+#include "path/corner_shape.hpp"
+#include "viapoint/core/error.hpp"
+#include "viapoint/core/units.hpp"
+
+namespace viapoint {
+namespace {
+
+/// A turn nearer than this to a reversal is a stop: the blend would have to come to rest anyway.
+constexpr double kReversal = 178.0 * kDegree;
+/// Cuts shorter than this [rad or m, 2-norm over the joints] are no room at all.
+constexpr double kShortestCut = 1e-7;
+/// The farther leg is cut at most this many times as far back as the nearer.
+constexpr double kMostUnequal = 4.0;
+/// Share of the zone aimed at; the rest is for the slack of the proof.
+constexpr double kAim = 0.997;
+/// Slack of the proof, as a share of the distance proven.
+constexpr double kProofShare = 2e-3;
+constexpr int kBisections = 24;
+constexpr int kProofs = 40;
+/// A proven use of the zone that is not improved on, and how many proofs go into reaching it.
+constexpr double kFullUse = 0.992;
+constexpr int kRefinements = 6;
+constexpr double kProofShrink = 0.99;
+/// Below this turn there is next to nothing to cut, and a zone not used up is no news.
+constexpr double kCollinear = 1.0 * kDegree;
+/// Legs may miss each other by this much where they meet [rad or m].
+constexpr double kMeetSlack = 1e-6;
+/// Absolute slack of the tool deviation that is only reported [m].
+constexpr double kToolResolution = 1e-7;
+
+double angle_between(const JointVector& a, const JointVector& b) {
+  // atan2 of the half-angle form is exact near 0 and π alike (Kahan 2006).
+  const JointVector u = a.normalized();
+  const JointVector v = b.normalized();
+  return 2.0 * std::atan2((u - v).norm(), (u + v).norm());
+}
+
+/// One corner under way.
+class CornerFit {
+ public:
+  CornerFit(const ForwardKinematics* arm, const JointPath& before, const JointPath& after,
+            const Zone& zone, double room_before, double room_after)
+      : legs_(before, after),
+        zone_(zone),
+        room_before_(std::clamp(room_before, 0.0, before.length())),
+        room_after_(std::clamp(room_after, 0.0, after.length())) {
+    if (arm != nullptr) tool_ = MotionSpace(*arm, legs_.travel());
+    has_tool_ = arm != nullptr;
+    if (zone.kind != ZoneKind::kJointDeviation) zone_space_ = tool_;
+  }
+
+  Corner run() {
+    turn_ = angle_between(legs_.direction_before(), legs_.direction_after());
+    // Written so that NaN, from a leg that stands still, is a refusal too.
+    if (!(turn_ <= kReversal)) return refuse("the path turns back on itself: stop at the point");
+    return zone_.kind == ZoneKind::kRadius ? fit_radius() : fit_deviation();
+  }
+
+ private:
+  static Corner refuse(std::string reason) {
+    Corner corner;
+    corner.reason = std::move(reason);
+    return corner;
+  }
+
+  /// Cuts as far back as the zone's radius reaches along each leg.
+  Corner fit_radius() {
+    double cut_before =
+        legs_.cut_within(zone_space_, CornerLegs::kBefore, kAim * zone_.size, room_before_);
+    double cut_after =
+        legs_.cut_within(zone_space_, CornerLegs::kAfter, kAim * zone_.size, room_after_);
+    const bool short_before = cut_before >= room_before_;
+    const bool short_after = cut_after >= room_after_;
+    balance(cut_before, cut_after);
+    for (int attempt = 0; attempt < kProofs; ++attempt) {
+      const CornerShape shape(legs_, cut_before, cut_after);
+      if (!shape.valid(kShortestCut)) break;
+      const double proven =
+          shape.bound_radius(zone_space_, kProofShare * zone_.size * 0.5, zone_.size);
+      if (proven <= zone_.size) {
+        return finish(shape, proven, short_before || short_after);
+      }
+      cut_before *= kProofShrink;
+      cut_after *= kProofShrink;
+    }
+    return refuse("no room: a leg is too short for a corner");
+  }
+
+  /// Makes neither cut much longer than the other (in joint distance).
+  void balance(double& cut_before, double& cut_after) const {
+    const double d1 = legs_.chord(CornerLegs::kBefore, cut_before);
+    const double d2 = legs_.chord(CornerLegs::kAfter, cut_after);
+    if (d1 > kMostUnequal * d2) {
+      cut_before = legs_.cut_of_chord(CornerLegs::kBefore, kMostUnequal * d2, cut_before);
+    } else if (d2 > kMostUnequal * d1) {
+      cut_after = legs_.cut_of_chord(CornerLegs::kAfter, kMostUnequal * d1, cut_after);
+    }
+  }
+
+  /// The largest equal cut-back (in joint distance; less on a leg without the room) whose deviation
+  /// from the legs keeps the zone.
+  Corner fit_deviation() {
+    const double most_before = legs_.chord(CornerLegs::kBefore, room_before_);
+    const double most_after = legs_.chord(CornerLegs::kAfter, room_after_);
+    const double most = std::min(std::max(most_before, most_after),
+                                 kMostUnequal * std::min(most_before, most_after));
+    double chord = most;
+    if (!seems_to_keep_zone(most)) {
+      double low = 0.0;
+      double high = most;
+      for (int i = 0; i < kBisections; ++i) {
+        chord = 0.5 * (low + high);
+        (seems_to_keep_zone(chord) ? low : high) = chord;
+      }
+      chord = low;
+    }
+    // The proof has the last word: the cut follows what it finds, between the longest that is
+    // proven and the shortest that is not. The deviation grows about like the cut.
+    std::optional<CornerShape> best;
+    double best_proven = 0.0;
+    double proven_chord = 0.0;
+    double refused_chord = std::numeric_limits<double>::infinity();
+    for (int attempt = 0; attempt < kProofs; ++attempt) {
+      const CornerShape shape = shape_of(chord);
+      if (!shape.valid(kShortestCut)) break;
+      const double proven =
+          shape.bound_deviation_from_legs(zone_space_, 1e-4 * zone_.size, kProofShare);
+      if (proven <= zone_.size) {
+        best.emplace(shape);
+        best_proven = proven;
+        proven_chord = chord;
+      } else {
+        refused_chord = chord;
+      }
+      const bool by_room = proven_chord >= most;
+      if (best && (by_room || best_proven >= kFullUse * zone_.size || attempt >= kRefinements)) {
+        return finish(*best, best_proven, by_room);
+      }
+      const double next = chord * std::min(2.0, kAim * zone_.size / proven);
+      const bool between = next > proven_chord && next < refused_chord;
+      chord = between ? next : 0.5 * (proven_chord + refused_chord);
+      chord = std::min(chord, most);
+    }
+    return refuse("no room: a leg is too short for a corner");
+  }
+
+  CornerShape shape_of(double chord) const {
+    return {legs_, legs_.cut_of_chord(CornerLegs::kBefore, chord, room_before_),
+            legs_.cut_of_chord(CornerLegs::kAfter, chord, room_after_)};
+  }
+
+  bool seems_to_keep_zone(double chord) const {
+    const CornerShape shape = shape_of(chord);
+    return !shape.valid(kShortestCut) ||
+           shape.distance_from_corner(zone_space_) <= kAim * zone_.size;
+  }
+
+  Corner finish(const CornerShape& shape, double used, bool limited_by_room) const {
+    Corner corner;
+    corner.possible = true;
+    corner.cut_before = shape.cut_before();
+    corner.cut_after = shape.cut_after();
+    corner.scale_after = shape.scale_after();
+    corner.blend = shape.blend();
+    corner.used = used;
+    if (zone_.kind == ZoneKind::kDeviation) {
+      corner.tool_deviation = used;
+    } else if (has_tool_) {
+      corner.tool_deviation = shape.bound_deviation_from_legs(tool_, kToolResolution, kProofShare);
+    }
+    if (limited_by_room && turn_ > kCollinear) {
+      corner.reason = "the legs are too short for the whole zone";
+    }
+    return corner;
+  }
+
+  CornerLegs legs_;
+  Zone zone_;
+  double room_before_;
+  double room_after_;
+  bool has_tool_ = false;
+  double turn_ = 0.0;
+  MotionSpace tool_;
+  MotionSpace zone_space_;
+};
+
+}  // namespace
+
+Corner round_corner(const ForwardKinematics* arm, const JointPath& before, const JointPath& after,
+                    const Zone& zone, double room_before, double room_after) {
+  if (before.empty() || after.empty()) {
+    throw MotionError(ErrorCode::kBadArgument, "a corner needs a leg on either side");
+  }
+  const JointVector end = before.at(before.length()).q;
+  const JointVector start = after.at(0.0).q;
+  if (end.size() != start.size() || !((end - start).lpNorm<Eigen::Infinity>() <= kMeetSlack)) {
+    throw MotionError(ErrorCode::kDiscontinuous, "the legs of a corner do not meet");
+  }
+  Corner impossible;
+  if (zone.kind == ZoneKind::kFine || !(zone.size > 0.0)) {
+    impossible.reason = "the zone has no size: stop at the point";
+    return impossible;
+  }
+  if (arm == nullptr && zone.kind != ZoneKind::kJointDeviation) {
+    impossible.reason = "an arm without kinematics has no tool: only joint zones are possible";
+    return impossible;
+  }
+  return CornerFit(arm, before, after, zone, room_before, room_after).run();
+}
+
+}  // namespace viapoint

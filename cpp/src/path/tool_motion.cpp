@@ -1,0 +1,231 @@
+#include "path/tool_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace viapoint {
+namespace {
+
+constexpr int kDeepest = 40;
+/// The search for nearest points is dearer; past this only rounding at the ends is left.
+constexpr int kDeepestSearch = 24;
+constexpr int kNearestSamples = 16;
+constexpr int kNearestSteps = 6;
+
+struct Interval {
+  double middle, half;
+  int depth;
+};
+
+void push_halves(std::vector<Interval>& open, const Interval& interval) {
+  const double quarter = 0.5 * interval.half;
+  open.push_back({interval.middle - quarter, quarter, interval.depth + 1});
+  open.push_back({interval.middle + quarter, quarter, interval.depth + 1});
+}
+
+JointPiece over_unit_length(JointPiece piece) {
+  piece.length = 1.0;
+  return piece;
+}
+
+}  // namespace
+
+PieceMotion::PieceMotion(const JointPiece& piece) : piece_(over_unit_length(piece)) {}
+
+LocalMotion PieceMotion::over(double middle, double half) const {
+  LocalMotion local;
+  local.at = piece_.at(middle);
+  local.sup = joint_suprema(piece_, local.at, middle, half);
+  return local;
+}
+
+PathMotion::PathMotion(const JointPath& path, const Eigen::Matrix<double, 6, 1>& s_of_u)
+    : path_(path) {
+  s_of_u_.coefficients = s_of_u;
+  s_of_u_.length = 1.0;
+}
+
+LocalMotion PathMotion::over(double middle, double half) const {
+  const PathPoint s = s_of_u_.at(middle);
+  const JointSuprema s_sup = joint_suprema(s_of_u_, s, middle, half);
+  const double s0 = s_of_u_.at(middle - half).q[0];
+  const double s1 = s_of_u_.at(middle + half).q[0];
+  const JointSuprema sup = suprema(std::min(s0, s1), std::max(s0, s1));
+  const PathPoint q = path_.at(s.q[0]);
+  const double d1 = s.q1[0];
+  const double d2 = s.q2[0];
+  const double b1 = s_sup.q1[0];
+  const double b2 = s_sup.q2[0];
+  const double b3 = s_sup.q3[0];
+  // The chain rule, on the values and on their sizes.
+  LocalMotion local;
+  local.at.q = q.q;
+  local.at.q1 = d1 * q.q1;
+  local.at.q2 = d1 * d1 * q.q2 + d2 * q.q1;
+  local.sup.q1 = b1 * sup.q1;
+  local.sup.q2 = b1 * b1 * sup.q2 + b2 * sup.q1;
+  local.sup.q3 = b1 * b1 * b1 * sup.q3 + 3.0 * b1 * b2 * sup.q2 + b3 * sup.q1;
+  return local;
+}
+
+JointSuprema PathMotion::suprema(double s0, double s1) const {
+  JointSuprema sup;
+  const size_t last = path_.piece_at(s1);
+  for (size_t k = path_.piece_at(s0); k <= last; ++k) {
+    const JointPiece& piece = path_.pieces()[k];
+    const double from = std::clamp(s0 - path_.start_of(k), 0.0, piece.length);
+    const double to = std::clamp(s1 - path_.start_of(k), 0.0, piece.length);
+    const double middle = 0.5 * (from + to);
+    const JointSuprema here = joint_suprema(piece, piece.at(middle), middle, 0.5 * (to - from));
+    if (sup.q1.size() == 0) {
+      sup = here;
+    } else {
+      sup.q1 = sup.q1.cwiseMax(here.q1);
+      sup.q2 = sup.q2.cwiseMax(here.q2);
+      sup.q3 = sup.q3.cwiseMax(here.q3);
+    }
+  }
+  return sup;
+}
+
+RestMotion::RestMotion(const JointVector& q) {
+  const JointVector zero = JointVector::Zero(q.size());
+  local_ = {{q, zero, zero, zero}, {zero, zero, zero}};
+}
+
+LocalMotion RestMotion::over(double /*middle*/, double /*half*/) const { return local_; }
+
+MotionSpace::MotionSpace(const ForwardKinematics& arm, const JointVector& travel)
+    : arm_(&arm), reach_(arm.reach_bound(travel)) {}
+
+double MotionSpace::distance(const JointVector& a, const JointVector& b) const {
+  if (arm_ == nullptr) return (a - b).norm();
+  return (arm_->pose(a).translation() - arm_->pose(b).translation()).norm();
+}
+
+MotionSpace::Expansion MotionSpace::expand(const LocalMotion& local) const {
+  if (arm_ == nullptr) return {local.at.q, local.at.q1, local.at.q2, local.sup.q3.norm()};
+  const ChainFrames frames = arm_->frames(local.at.q);
+  const auto jacobian = arm_->jacobian(frames).topRows<3>().eval();
+  const auto jacobian_rate = arm_->jacobian_rate(frames, local.at.q1).topRows<3>().eval();
+  return {frames.pose_base_tool.translation(), jacobian * local.at.q1,
+          jacobian * local.at.q2 + jacobian_rate * local.at.q1,
+          position_third_bound(*arm_, reach_, local.sup)};
+}
+
+MotionSpace::Vector MotionSpace::point(const JointMotion& motion, double u) const {
+  const JointVector q = motion.over(u, 0.0).at.q;
+  if (arm_ == nullptr) return q;
+  return arm_->pose(q).translation();
+}
+
+double MotionSpace::bound_difference(const Expansion& a, const Expansion& b, double half) {
+  const Vector e = a.value - b.value;
+  const Vector e1 = half * (a.first - b.first);
+  const Vector e2 = 0.5 * half * half * (a.second - b.second);
+  // Control points of the quadratic part; their largest norm bounds it (Bernstein form).
+  return std::max({(e - e1 + e2).norm(), (e - e2).norm(), (e + e1 + e2).norm()}) +
+         half * half * half / 6.0 * (a.third + b.third);
+}
+
+double MotionSpace::bound_distance(const JointMotion& a, const JointMotion& b, double u0, double u1,
+                                   double resolution, double share, double give_up) const {
+  double seen = 0.0;
+  double proven = 0.0;
+  std::vector<Interval> open = {{0.5 * (u0 + u1), 0.5 * (u1 - u0), 0}};
+  while (!open.empty()) {
+    const Interval interval = open.back();
+    open.pop_back();
+    const Expansion of_a = expand(a.over(interval.middle, interval.half));
+    const Expansion of_b = expand(b.over(interval.middle, interval.half));
+    seen = std::max(seen, (of_a.value - of_b.value).norm());
+    if (!(seen <= give_up)) return seen;
+    const double bound = bound_difference(of_a, of_b, interval.half);
+    if (bound <= seen * (1.0 + share) + resolution || interval.depth >= kDeepest) {
+      proven = std::max(proven, bound);
+    } else {
+      push_halves(open, interval);
+    }
+  }
+  return proven;
+}
+
+MotionSpace::Nearest MotionSpace::nearest(const Vector& wanted, const JointMotion& target) const {
+  Nearest best;
+  best.target = &target;
+  const auto distance_at = [&](double u) { return (point(target, u) - wanted).norm(); };
+  for (int k = 0; k <= kNearestSamples; ++k) {
+    const double u = static_cast<double>(k) / kNearestSamples;
+    const double distance = distance_at(u);
+    if (distance < best.distance) {
+      best.distance = distance;
+      best.u = u;
+    }
+  }
+  // Newton on (b − wanted)·b' = 0 where that is a minimum (the curvature of the square is bounded
+  // below by ‖b'‖² / 4), shorter where it does not come nearer.
+  for (int step = 0; step < kNearestSteps; ++step) {
+    const Expansion at = expand(target.over(best.u, 0.0));
+    const Vector gap = at.value - wanted;
+    const double square = at.first.squaredNorm();
+    const double bend = std::max(square + gap.dot(at.second), 0.25 * square);
+    if (!(bend > 0.0)) break;
+    double move = -gap.dot(at.first) / bend;
+    double u = best.u;
+    double distance = best.distance;
+    for (int halving = 0; halving < kNearestSteps && !(distance < best.distance); ++halving) {
+      u = std::clamp(best.u + move, 0.0, 1.0);
+      distance = distance_at(u);
+      move *= 0.5;
+    }
+    if (!(distance < best.distance)) break;
+    best.distance = distance;
+    best.u = u;
+  }
+  return best;
+}
+
+double MotionSpace::bound_directed(const JointMotion& a,
+                                   std::span<const JointMotion* const> targets, double resolution,
+                                   double share, double give_up) const {
+  double seen = 0.0;
+  double proven = 0.0;
+  std::vector<Interval> open = {{0.5, 0.5, 0}};
+  while (!open.empty()) {
+    const Interval interval = open.back();
+    open.pop_back();
+    const Expansion of_a = expand(a.over(interval.middle, interval.half));
+    Nearest near;
+    for (const JointMotion* target : targets) {
+      const Nearest here = nearest(of_a.value, *target);
+      if (near.target == nullptr || here.distance < near.distance) near = here;
+    }
+    // db/du of the stretch that follows a, and no farther than the target's ends.
+    const Expansion there = expand(near.target->over(near.u, 0.0));
+    const double square = there.first.squaredNorm();
+    const double room = std::min(near.u, 1.0 - near.u) / interval.half;
+    const double rate =
+        square > 0.0 ? std::clamp(of_a.first.dot(there.first) / square, -room, room) : 0.0;
+    LocalMotion stretch = near.target->over(near.u, std::abs(rate) * interval.half);
+    stretch.at.q1 *= rate;
+    stretch.at.q2 *= rate * rate;
+    stretch.sup.q1 *= std::abs(rate);
+    stretch.sup.q2 *= rate * rate;
+    stretch.sup.q3 *= std::abs(rate) * rate * rate;
+    const Expansion of_b = expand(stretch);
+    // The sampled nearest point may not be the nearest: `seen` only steers how fine to go.
+    seen = std::max(seen, (of_a.value - of_b.value).norm());
+    if (!(seen <= give_up)) return seen;
+    const double bound = bound_difference(of_a, of_b, interval.half);
+    if (bound <= seen * (1.0 + share) + resolution || interval.depth >= kDeepestSearch) {
+      proven = std::max(proven, bound);
+    } else {
+      push_halves(open, interval);
+    }
+  }
+  return proven;
+}
+
+}  // namespace viapoint
