@@ -118,9 +118,10 @@ class Walk {
         return;
       }
       if (lin != nullptr && !lost_) {
-        for (std::string& way : ways_out_of(*lin, at_, builder_)) {
-          problem.ways_out.push_back(std::move(way));
-        }
+        // Only what was tried and works is offered; the follower's general hints stand where
+        // nothing does.
+        std::vector<std::string> ways = ways_out_of(*lin, at_, builder_);
+        if (!ways.empty()) problem.ways_out = std::move(ways);
       }
       add(std::move(problem));
       go_on_from(target);

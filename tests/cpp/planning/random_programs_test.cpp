@@ -1,0 +1,120 @@
+// Random programs of mixed moves: each ends in a certified motion or a named error.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "planning/planner_fixture.hpp"
+
+namespace viapoint {
+namespace {
+
+using namespace testing_planner;
+
+/// How many programs for which arm: numerical inverse kinematics is slow at listing branches.
+struct Sweep {
+  const char* robot;
+  unsigned programs;
+};
+
+class RandomPrograms : public testing::TestWithParam<Sweep> {};
+
+JointVector random_joints(const JointLimits& limits, std::mt19937& random, double reach) {
+  std::uniform_real_distribution<double> uniform(-reach, reach);
+  JointVector q(limits.joints());
+  for (int i = 0; i < limits.joints(); ++i) {
+    const double middle = 0.5 * (limits.position_min[i] + limits.position_max[i]);
+    const double half = 0.5 * (limits.position_max[i] - limits.position_min[i]);
+    q[i] = middle + uniform(random) * half;
+  }
+  return q;
+}
+
+Zone random_zone(std::mt19937& random) {
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  switch (random() % 4) {
+    case 0:
+      return {};
+    case 1:
+      return {ZoneKind::kRadius, 0.1 * uniform(random)};
+    case 2:
+      return {ZoneKind::kDeviation, 0.02 * uniform(random)};
+    default:
+      return {ZoneKind::kJointDeviation, 0.05 * uniform(random)};
+  }
+}
+
+MotionProgram random_program(const RobotModel& robot, std::mt19937& random) {
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  JointVector q = random_joints(robot.limits(), random, 0.5);
+  Script script(robot, q);
+  const size_t moves = 1 + random() % 4;
+  for (size_t i = 0; i < moves; ++i) {
+    // Near targets mostly, so that many straight lines exist.
+    const double step = random() % 3 == 0 ? 1.0 : 0.15;
+    q = (1.0 - step) * q + step * random_joints(robot.limits(), random, 0.8);
+    MoveOptions options;
+    options.zone = random_zone(random);
+    if (random() % 3 == 0) options.scale = 0.1 + 0.9 * uniform(random);
+    if (random() % 3 == 0) options.speed = 0.05 + uniform(random);
+    if (random() % 3 == 0) options.acceleration = 0.1 + 5.0 * uniform(random);
+    if (random() % 2 == 0) {
+      script.add(PtpMove{JointTarget{q}}, options);
+    } else {
+      script.add(
+          LinMove{PoseTarget{robot.forward().pose(q)}, static_cast<Orientation>(random() % 3)},
+          options);
+    }
+    if (random() % 8 == 0) script.add(Wait{0.1 * uniform(random)});
+    if (random() % 8 == 0) script.add(SetOutput{1, true});
+  }
+  return script.program();
+}
+
+TEST_P(RandomPrograms, EndInACertifiedMotionOrANamedError) {
+  const RobotPtr arm = robot(GetParam().robot);
+  const MotionPlanner planner(arm);
+  int planned = 0;
+  for (unsigned seed = 0; seed < GetParam().programs; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937 random(seed);
+    const MotionProgram program = random_program(*arm, random);
+    const Report report = planner.check(program);
+    for (const Problem& problem : report.problems) {
+      ASSERT_NE(problem.code, ErrorCode::kInternal) << problem.describe();
+      ASSERT_NE(problem.code, ErrorCode::kDiscontinuous) << problem.describe();
+      ASSERT_NE(problem.code, ErrorCode::kVelocityLimit) << problem.describe();
+      ASSERT_NE(problem.code, ErrorCode::kAccelerationLimit) << problem.describe();
+      ASSERT_NE(problem.code, ErrorCode::kJerkLimit) << problem.describe();
+      ASSERT_FALSE(problem.message.empty());
+      ASSERT_TRUE(problem.line.has_value()) << problem.describe();
+    }
+    if (!report.ok()) {
+      ASSERT_THROW((void)planner.plan(program), MotionError);
+      continue;
+    }
+    const PlannedMotion motion = planner.plan(program);
+    ASSERT_TRUE(motion.trajectory.certificate().holds());
+    ++planned;
+    // Independent of the certificate: dense samples keep every limit.
+    const Trajectory& trajectory = motion.trajectory;
+    for (int k = 0; k <= 500; ++k) {
+      const JointState state = trajectory.at(trajectory.duration() * k / 500.0);
+      ASSERT_TRUE(arm->limits().contains(state.q, 1e-9));
+      for (int i = 0; i < arm->joints(); ++i) {
+        ASSERT_LE(std::abs(state.qd[i]), arm->limits().velocity[i] * (1 + 1e-6));
+        ASSERT_LE(std::abs(state.qdd[i]), arm->limits().acceleration[i] * (1 + 1e-6));
+        ASSERT_LE(std::abs(state.qddd[i]), arm->limits().jerk[i] * (1 + 1e-6));
+      }
+    }
+  }
+  // The sweep must mean something: a good part of the programs run.
+  EXPECT_GE(planned, static_cast<int>(GetParam().programs) / 5);
+}
+
+INSTANTIATE_TEST_SUITE_P(Robots, RandomPrograms,
+                         testing::Values(Sweep{"puma560", 200}, Sweep{"scara", 60},
+                                         Sweep{"ur5e", 15}, Sweep{"panda", 15}),
+                         [](const auto& instance) { return std::string(instance.param.robot); });
+
+}  // namespace
+}  // namespace viapoint
