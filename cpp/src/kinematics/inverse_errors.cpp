@@ -98,6 +98,8 @@ void refuse_outside_limits(const ForwardKinematics& forward, const JointTurns& t
     problem.message += "joint " + std::to_string(least.joint + 1) + " at " +
                        joint_value(type, least.value) + ", its limit is " +
                        joint_value(type, least.limit);
+  } else if (least.row < 0) {
+    problem.message += "a joint on its limit, where the pose is missed by more than rounding";
   } else {
     problem.message += "coupled limit " + std::to_string(least.row + 1) + " at " +
                        std::to_string(least.value) + ", its bound is " +

@@ -1,6 +1,5 @@
 #include "viapoint/kinematics/robot_model.hpp"
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -11,7 +10,6 @@
 
 #include "kinematics/inverse_errors.hpp"
 #include "kinematics/inverse_factory.hpp"
-#include "kinematics/spherical_wrist.hpp"
 #include "viapoint/core/error.hpp"
 #include "viapoint/kinematics/inverse_kinematics.hpp"
 

@@ -1,10 +1,11 @@
+#include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
 
-#include "kinematics/spherical_wrist.hpp"
+#include "kinematics/closed_form.hpp"
 #include "viapoint/kinematics/robot_model.hpp"
 
 namespace viapoint {
@@ -32,32 +33,36 @@ std::vector<int> task_rows(const ForwardKinematics& forward) {
   return rows;
 }
 
-/// Singular values of those rows, position rows divided by `length` [m].
-Eigen::VectorXd singular_values(const ForwardKinematics& forward, const JointVector& q,
-                                double length) {
+using TaskJacobian =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxJoints, kMaxJoints>;
+
+/// Those rows of the Jacobian, position rows divided by `length` [m].
+TaskJacobian task_jacobian(const ForwardKinematics& forward, const JointVector& q, double length) {
   const Jacobian jacobian = forward.jacobian(forward.frames(q));
   const std::vector<int> rows = task_rows(forward);
-  Eigen::MatrixXd task(rows.size(), forward.joints());
+  TaskJacobian task(static_cast<Eigen::Index>(rows.size()), forward.joints());
   for (size_t k = 0; k < rows.size(); ++k) {
-    const auto row = static_cast<Eigen::Index>(k);
-    task.row(row) = jacobian.row(rows[k]) / (rows[k] < 3 ? length : 1.0);
+    task.row(static_cast<Eigen::Index>(k)) = jacobian.row(rows[k]) / (rows[k] < 3 ? length : 1.0);
   }
-  return Eigen::JacobiSVD<Eigen::MatrixXd>(task).singularValues();
+  return task;
 }
 
 }  // namespace
 
 double RobotModel::manipulability(const JointVector& q) const {
   require_kinematics(q);
-  // √det(J Jᵀ) is the product of the singular values.
-  return singular_values(forward_, q, 1.0).prod();
+  TaskJacobian task = task_jacobian(forward_, q, 1.0);
+  if (task.rows() < task.cols()) task.transposeInPlace();
+  // With the thin Q R of the longer side, √det(J Jᵀ) = |∏ r_ii|: no digits lost to the square.
+  const Eigen::HouseholderQR<TaskJacobian> qr(task);
+  return std::abs(qr.matrixQR().diagonal().prod());
 }
 
 Singularity RobotModel::singularity(const JointVector& q) const {
   Singularity found;
   found.manipulability = manipulability(q);
-  if (const auto arm = SphericalWrist::recognise(forward_)) {
-    const WristSingularities near = arm->singularities(q);
+  if (const auto arm = recognise_closed_form(forward_)) {
+    const ArmSingularities near = arm->singularities(q);
     const std::array distances{near.shoulder / near.length, near.elbow, near.wrist};
     const auto least = std::min_element(distances.begin(), distances.end());
     const std::array names{"shoulder", "elbow", "wrist"};
@@ -71,7 +76,9 @@ Singularity RobotModel::singularity(const JointVector& q) const {
     if (forward_.type(i) == JointType::kPrismatic) travel[i] = 1.0;
   }
   const double length = std::max(forward_.reach_bound(travel).maxCoeff(), 1e-3);
-  found.distance = singular_values(forward_, q, length).minCoeff();
+  found.distance = Eigen::JacobiSVD<TaskJacobian>(task_jacobian(forward_, q, length))
+                       .singularValues()
+                       .minCoeff();
   found.name = found.distance < kNearSingularValue ? "boundary" : "none";
   return found;
 }

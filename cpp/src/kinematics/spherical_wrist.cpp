@@ -3,61 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "viapoint/core/units.hpp"
+
 namespace viapoint {
-namespace {
-
-/// How exactly axes must be parallel, square or concurrent for the closed form to be used.
-constexpr double kExact = 1e-9;
-/// A wrist centre beyond the boundary by no more than this is taken to be on it [m]; the forward
-/// kinematics still has to confirm the answer.
-constexpr double kBoundary = 1e-9;
-/// Below this sine of the wrist angle q4 and q6 turn about one line [rad].
-constexpr double kWristSine = 2e-10;
-/// Below this a direction in the plane of axis 1 is not determined [m].
-constexpr double kOnAxis = 1e-10;
-
-/// Point of line a nearest to line b; nothing when they are parallel.
-std::optional<Eigen::Vector3d> nearest_point(const Eigen::Vector3d& origin_a,
-                                             const Eigen::Vector3d& axis_a,
-                                             const Eigen::Vector3d& origin_b,
-                                             const Eigen::Vector3d& axis_b) {
-  const Eigen::Vector3d normal = axis_a.cross(axis_b);
-  const double square = normal.squaredNorm();
-  if (square < 1e-6) return std::nullopt;
-  const double along = (origin_b - origin_a).cross(axis_b).dot(normal) / square;
-  return origin_a + along * axis_a;
-}
-
-Eigen::Matrix3d about_y(double angle) {
-  return Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitY()).toRotationMatrix();
-}
-
-Eigen::Matrix3d about_z(double angle) {
-  return Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-}
-
-/// The two angles of an elbow between links a and b that span `reach`: 0 is stretched. Written with
-/// factors that vanish at the boundary, so that no digits are lost there. Nothing when out of
-/// reach.
-struct Elbow {
-  bool solved = false;
-  double angle = 0.0;         ///< [rad], in [0, π]
-  double out_of_reach = 0.0;  ///< [m]
-};
-
-Elbow bend_elbow(double a, double b, double reach) {
-  const double stretched = (a + b) - reach;
-  const double folded = reach - std::abs(a - b);
-  const double missing = std::max(-stretched, -folded);
-  if (missing > kBoundary) return {false, 0.0, missing};
-  // 1 − cos γ = (a + b − r)(a + b + r)/2ab and 1 + cos γ = (r − |a − b|)(r + |a − b|)/2ab.
-  const double one_minus = std::max(stretched, 0.0) * (a + b + reach);
-  const double one_plus = std::max(folded, 0.0) * (reach + std::abs(a - b));
-  return {true, 2.0 * std::atan2(std::sqrt(one_minus), std::sqrt(one_plus)), 0.0};
-}
-
-}  // namespace
-
 std::optional<SphericalWrist> SphericalWrist::recognise(const ForwardKinematics& forward) {
   if (forward.joints() != 6) return std::nullopt;
   for (int i = 0; i < 6; ++i) {
@@ -66,24 +14,18 @@ std::optional<SphericalWrist> SphericalWrist::recognise(const ForwardKinematics&
   const ChainFrames zero = forward.frames(JointVector::Zero(6));
   const auto& axis = zero.axis;
   const auto& origin = zero.origin;
-  if (std::abs(axis[0].dot(axis[1])) > kExact || axis[1].cross(axis[2]).norm() > kExact ||
-      std::abs(axis[3].dot(axis[4])) > kExact || std::abs(axis[4].dot(axis[5])) > kExact) {
+  if (std::abs(axis[0].dot(axis[1])) > kExactAxes || axis[1].cross(axis[2]).norm() > kExactAxes ||
+      std::abs(axis[3].dot(axis[4])) > kExactAxes || std::abs(axis[4].dot(axis[5])) > kExactAxes) {
     return std::nullopt;
   }
   const auto centre = nearest_point(origin[4], axis[4], origin[3], axis[3]);
-  if (!centre || axis[3].cross(*centre - origin[3]).norm() > kExact ||
-      axis[5].cross(*centre - origin[5]).norm() > kExact) {
+  if (!centre || axis[3].cross(*centre - origin[3]).norm() > kExactAxes ||
+      axis[5].cross(*centre - origin[5]).norm() > kExactAxes) {
     return std::nullopt;
   }
 
   SphericalWrist arm;
-  Eigen::Matrix3d frame;
-  frame.col(2) = axis[0];
-  frame.col(1) = (axis[1] - axis[0].dot(axis[1]) * axis[0]).normalized();
-  frame.col(0) = frame.col(1).cross(frame.col(2));
-  arm.pose_base_s_.linear() = frame;
-  arm.pose_base_s_.translation() = origin[0] + axis[0].dot(origin[1] - origin[0]) * axis[0];
-
+  arm.pose_base_s_ = shoulder_frame(zero);
   const Pose pose_s_base = arm.pose_base_s_.inverse(Eigen::Isometry);
   const Eigen::Vector3d shoulder = pose_s_base * origin[1];
   const Eigen::Vector3d elbow = pose_s_base * origin[2];
@@ -102,43 +44,37 @@ std::optional<SphericalWrist> SphericalWrist::recognise(const ForwardKinematics&
   wrist_frame.col(2) = (axis[3] - axis[3].dot(axis[4]) * axis[4]).normalized();
   wrist_frame.col(0) = wrist_frame.col(1).cross(wrist_frame.col(2));
   arm.tilt_ = std::atan2(axis[5].dot(wrist_frame.col(0)), axis[5].dot(wrist_frame.col(2)));
-  arm.rotation_s_wrist_ = frame.transpose() * wrist_frame;
-  arm.rotation_s_tool_ = frame.transpose() * zero.pose_base_tool.linear();
+  arm.rotation_s_wrist_ = pose_s_base.linear() * wrist_frame;
+  arm.rotation_s_tool_ = pose_s_base.linear() * zero.pose_base_tool.linear();
   arm.wrist_in_tool_ = zero.pose_base_tool.inverse(Eigen::Isometry) * *centre;
   return arm;
+}
+
+std::string SphericalWrist::family() const {
+  return "spherical wrist: axes 4, 5, 6 meet in one point";
 }
 
 Eigen::Matrix3d SphericalWrist::arm_rotation(const Eigen::Vector3d& arm) const {
   return about_z(arm[0]) * about_y(arm[1] + elbow_sign_ * arm[2]);
 }
 
-WristSolutions SphericalWrist::solve(const Pose& pose_base_tool, const JointVector& held) const {
+ClosedSolutions SphericalWrist::solve(const Pose& pose_base_tool, const JointVector& held) const {
   const Pose pose_s_tool = pose_base_s_.inverse(Eigen::Isometry) * pose_base_tool;
   const Eigen::Vector3d wrist = pose_s_tool * wrist_in_tool_;
-  WristSolutions solutions;
+  ClosedSolutions solutions;
 
   // Joint 1 turns the arm's plane, which passes axis 1 at the distance |side|.
-  const double radius = std::hypot(wrist.x(), wrist.y());
-  const double inside = radius - std::abs(side_);
-  if (inside < -kBoundary) {
-    solutions.out_of_reach = -inside;
-    return solutions;
-  }
-  const double forward = std::sqrt(std::max(inside, 0.0) * (radius + std::abs(side_)));
   double missing = 0.0;
-  for (const double x : {forward, -forward}) {
-    if (x == 0.0 && std::signbit(x)) continue;  // both shoulders are one
-    const double q1 =
-        radius < kOnAxis ? held[0] : std::atan2(wrist.y(), wrist.x()) - std::atan2(side_, x);
+  for (const ShoulderBranch& shoulder :
+       turn_shoulder(wrist.x(), wrist.y(), side_, held[0], missing)) {
     // Joints 2 and 3 are a planar arm in (z, x): turning about y by θ multiplies z + ix by e^{iθ}.
-    const double ahead = x - shoulder_x_;
+    const double ahead = shoulder.forward - shoulder_x_;
     const Elbow elbow = bend_elbow(upper_, fore_, std::hypot(ahead, wrist.z()));
     if (!elbow.solved) {
       missing = missing == 0.0 ? elbow.out_of_reach : std::min(missing, elbow.out_of_reach);
       continue;
     }
     for (const double bend : {elbow.angle, -elbow.angle}) {
-      if (bend == 0.0 && std::signbit(bend)) continue;  // stretched: both elbows are one
       const double q3 = elbow_sign_ * (bend - fore_angle_ + upper_angle_);
       const double span_z = upper_ + fore_ * std::cos(bend);
       const double span_x = fore_ * std::sin(bend);
@@ -146,7 +82,9 @@ WristSolutions SphericalWrist::solve(const Pose& pose_base_tool, const JointVect
           std::hypot(ahead, wrist.z()) < kOnAxis
               ? held[1]
               : std::atan2(ahead, wrist.z()) - upper_angle_ - std::atan2(span_x, span_z);
-      solve_wrist(pose_s_tool.linear(), Eigen::Vector3d(q1, q2, q3), held, solutions.branches);
+      solve_wrist(pose_s_tool.linear(), Eigen::Vector3d(shoulder.q1, q2, q3), held,
+                  solutions.branches);
+      if (elbow.angle == 0.0) break;  // stretched: both elbows are one
     }
   }
   if (solutions.branches.empty()) solutions.out_of_reach = missing;
@@ -154,7 +92,7 @@ WristSolutions SphericalWrist::solve(const Pose& pose_base_tool, const JointVect
 }
 
 void SphericalWrist::solve_wrist(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& arm,
-                                 const JointVector& held, std::vector<WristBranch>& out) const {
+                                 const JointVector& held, std::vector<ClosedBranch>& out) const {
   // What is left for the wrist, in its own frame: N = Rz(q4) Ry(q5 + tilt) Rz(q6).
   const Eigen::Matrix3d left =
       arm_rotation(arm).transpose() * rotation * rotation_s_tool_.transpose();
@@ -167,14 +105,14 @@ void SphericalWrist::solve_wrist(const Eigen::Matrix3d& rotation, const Eigen::V
   const auto finish = [&](double q4) {
     const double c = std::cos(q4);
     const double s = std::sin(q4);
-    WristBranch branch;
+    ClosedBranch branch;
     branch.q = JointVector(6);
     branch.q << arm[0], arm[1], arm[2], q4, std::atan2(c * n(0, 2) + s * n(1, 2), n(2, 2)) - tilt_,
         std::atan2(c * n(1, 0) - s * n(0, 0), c * n(1, 1) - s * n(0, 1));
     return branch;
   };
   if (sine < kWristSine) {
-    WristBranch branch = finish(held[3]);
+    ClosedBranch branch = finish(held[3]);
     branch.wrist_free = true;
     branch.wrist_sign = n(2, 2) > 0.0 ? 1.0 : -1.0;
     branch.wrist_sum = branch.q[3] + branch.wrist_sign * branch.q[5];
@@ -183,18 +121,17 @@ void SphericalWrist::solve_wrist(const Eigen::Matrix3d& rotation, const Eigen::V
   }
   const double q4 = std::atan2(n(1, 2), n(0, 2));
   out.push_back(finish(q4));
-  out.push_back(finish(q4 > 0.0 ? q4 - M_PI : q4 + M_PI));
+  out.push_back(finish(q4 > 0.0 ? q4 - kPi : q4 + kPi));
 }
 
-WristSingularities SphericalWrist::singularities(const JointVector& q) const {
-  WristSingularities near;
+ArmSingularities SphericalWrist::singularities(const JointVector& q) const {
+  ArmSingularities near;
   near.length = upper_ + fore_;
   const double upper = upper_angle_ + q[1];
   const double fore = fore_angle_ + q[1] + elbow_sign_ * q[2];
   near.shoulder = std::abs(shoulder_x_ + upper_ * std::sin(upper) + fore_ * std::sin(fore));
-  // |remainder| of the doubled angle: 0 when stretched and when folded alike.
-  near.elbow = 0.5 * std::abs(std::remainder(2.0 * (fore - upper), 2.0 * M_PI));
-  near.wrist = 0.5 * std::abs(std::remainder(2.0 * (q[4] + tilt_), 2.0 * M_PI));
+  near.elbow = from_half_turns(fore - upper);
+  near.wrist = from_half_turns(q[4] + tilt_);
   return near;
 }
 

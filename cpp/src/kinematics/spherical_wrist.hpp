@@ -6,51 +6,29 @@
 /// offset of shoulder, elbow and wrist (PUMA, and most industrial arms with six axes).
 #pragma once
 
-#include <array>
 #include <optional>
+#include <string>
 #include <vector>
 
-#include "viapoint/kinematics/forward_kinematics.hpp"
+#include "kinematics/closed_form.hpp"
 
 namespace viapoint {
 
-/// One family of solutions, whole turns left aside.
-struct WristBranch {
-  JointVector q;
-  /// At a wrist singularity only q4 + sign · q6 is determined: both turn about one line.
-  bool wrist_free = false;
-  double wrist_sum = 0.0;   ///< q4 + sign · q6 [rad]
-  double wrist_sign = 1.0;  ///< +1 or -1
-};
-
-/// What the closed form finds for one pose.
-struct WristSolutions {
-  std::vector<WristBranch> branches;
-  double out_of_reach = 0.0;  ///< how far the wrist centre is out of reach [m]; 0 when it is not
-};
-
-/// Nearness to each of the three singularities.
-struct WristSingularities {
-  double shoulder = 0.0;  ///< wrist centre to the plane of axis 1 parallel to axis 2 [m]
-  double elbow = 0.0;     ///< elbow from stretched or folded [rad]
-  double wrist = 0.0;     ///< axes 4 and 6 from parallel [rad]
-  double length = 0.0;    ///< upper arm + forearm [m], to compare metres with radians
-};
-
 /// The geometry of such an arm, read off its chain at q = 0. Immutable. Threads: any.
-class SphericalWrist {
+class SphericalWrist final : public ClosedForm {
  public:
   /// Nothing when the chain is not of this kind.
   [[nodiscard]] static std::optional<SphericalWrist> recognise(const ForwardKinematics& forward);
 
-  /// Every branch (up to eight); where a joint is free it takes its value in `held`.
-  [[nodiscard]] WristSolutions solve(const Pose& pose_base_tool, const JointVector& held) const;
-  [[nodiscard]] WristSingularities singularities(const JointVector& q) const;
+  [[nodiscard]] std::string family() const override;
+  [[nodiscard]] ClosedSolutions solve(const Pose& pose_base_tool,
+                                      const JointVector& held) const override;
+  [[nodiscard]] ArmSingularities singularities(const JointVector& q) const override;
 
  private:
   SphericalWrist() = default;
   void solve_wrist(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& arm,
-                   const JointVector& held, std::vector<WristBranch>& out) const;
+                   const JointVector& held, std::vector<ClosedBranch>& out) const;
   [[nodiscard]] Eigen::Matrix3d arm_rotation(const Eigen::Vector3d& arm) const;
 
   // Frame S: origin on axis 1 at the height of axis 2, z along axis 1, y along axis 2.

@@ -1,43 +1,41 @@
-#include "kinematics/spherical_wrist_inverse.hpp"
+#include "kinematics/closed_form_inverse.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "kinematics/inverse_errors.hpp"
 #include "viapoint/core/units.hpp"
 
 namespace viapoint {
 
-SphericalWristInverse::SphericalWristInverse(const ForwardKinematics& forward,
-                                             const JointLimits& limits, const SphericalWrist& wrist)
+ClosedFormInverse::ClosedFormInverse(const ForwardKinematics& forward, const JointLimits& limits,
+                                     std::unique_ptr<const ClosedForm> form)
     : forward_(forward),
       limits_(limits),
       turns_(forward, limits),
-      wrist_(wrist),
-      position_(forward, limits, "position only") {}
+      form_(std::move(form)),
+      numerical_(forward, limits, "where the closed form does not answer") {}
 
-std::string SphericalWristInverse::family() const {
-  return "spherical wrist: axes 4, 5, 6 meet in one point";
-}
+std::string ClosedFormInverse::family() const { return form_->family(); }
 
-bool SphericalWristInverse::confirmed(const Pose& pose, const JointVector& q) const {
+bool ClosedFormInverse::confirmed(const Pose& pose, const JointVector& q) const {
   return pose_error(forward_.pose(q), pose).within(kPoseTolerance);
 }
 
-std::vector<WristBranch> SphericalWristInverse::branches(const Pose& pose,
-                                                         const JointVector& held) const {
-  WristSolutions solutions = wrist_.solve(pose, held);
+ClosedSolutions ClosedFormInverse::branches(const Pose& pose, const JointVector& held) const {
+  ClosedSolutions solutions = form_->solve(pose, held);
   std::erase_if(solutions.branches,
-                [&](const WristBranch& branch) { return !confirmed(pose, branch.q); });
-  if (solutions.branches.empty()) {
-    refuse_unreachable("the wrist centre of the pose", solutions.out_of_reach);
+                [&](const ClosedBranch& branch) { return !confirmed(pose, branch.q); });
+  if (solutions.branches.empty() && !solutions.held) {
+    refuse_unreachable("the wrist at this pose", solutions.out_of_reach);
   }
-  return std::move(solutions.branches);
+  return solutions;
 }
 
-std::vector<JointVector> SphericalWristInverse::shared(const WristBranch& branch,
-                                                       const JointVector& held) const {
+std::vector<JointVector> ClosedFormInverse::shared(const ClosedBranch& branch,
+                                                   const JointVector& held) const {
   if (!branch.wrist_free) return {branch.q};
   const double low4 = limits_.position_min[3];
   const double high4 = limits_.position_max[3];
@@ -63,12 +61,13 @@ std::vector<JointVector> SphericalWristInverse::shared(const WristBranch& branch
   return out;
 }
 
-std::vector<JointVector> SphericalWristInverse::solve_all(const Pose& pose_base_tool) const {
+std::vector<JointVector> ClosedFormInverse::solve_all(const Pose& pose_base_tool) const {
   require_pose(pose_base_tool);
   const JointVector zero = JointVector::Zero(6);
   std::vector<JointVector> solutions;
   std::vector<JointVector> refused;
-  for (const WristBranch& branch : branches(pose_base_tool, zero)) {
+  const ClosedSolutions closed = branches(pose_base_tool, zero);
+  for (const ClosedBranch& branch : closed.branches) {
     for (const JointVector& candidate : shared(branch, zero)) {
       const std::vector<JointVector> turned = turns_.all(candidate);
       if (turned.empty()) refused.push_back(candidate);
@@ -77,6 +76,7 @@ std::vector<JointVector> SphericalWristInverse::solve_all(const Pose& pose_base_
       }
     }
   }
+  if (solutions.empty() && closed.held) return numerical_.solve_all(pose_base_tool);
   if (solutions.empty()) refuse_outside_limits(forward_, turns_, refused);
   std::sort(solutions.begin(), solutions.end(),
             [&](const auto& a, const auto& b) { return is_nearer(a, b, zero); });
@@ -92,45 +92,56 @@ std::vector<JointVector> SphericalWristInverse::solve_all(const Pose& pose_base_
   return distinct;
 }
 
-JointVector SphericalWristInverse::solve_near(const Pose& pose_base_tool,
-                                              const JointVector& near) const {
+JointVector ClosedFormInverse::solve_near(const Pose& pose_base_tool,
+                                          const JointVector& near) const {
   require_pose(pose_base_tool);
   require_joints(near, 6, "near");
   std::optional<JointVector> best;
   std::vector<JointVector> refused;
-  for (const WristBranch& branch : branches(pose_base_tool, near)) {
+  const ClosedSolutions closed = branches(pose_base_tool, near);
+  for (const ClosedBranch& branch : closed.branches) {
     for (const JointVector& candidate : shared(branch, near)) {
-      const auto q = turns_.nearest(candidate, near);
-      if (!q || !confirmed(pose_base_tool, *q)) {
+      auto q = turns_.nearest(candidate, near);
+      if (q && !confirmed(pose_base_tool, *q)) {
+        // A joint was set on its limit and misses the pose there: another turn may not need that.
+        q.reset();
+        for (const JointVector& turn : turns_.all(candidate)) {
+          if ((!q || is_nearer(turn, *q, near)) && confirmed(pose_base_tool, turn)) q = turn;
+        }
+      }
+      if (!q) {
         refused.push_back(candidate);
         continue;
       }
       if (!best || is_nearer(*q, *best, near)) best = *q;
     }
   }
+  if (!best && closed.held) return numerical_.solve_near(pose_base_tool, near);
   if (!best) refuse_outside_limits(forward_, turns_, refused);
   return *best;
 }
 
-JointVector SphericalWristInverse::solve_near_unlimited(const Pose& pose_base_tool,
-                                                        const JointVector& near) const {
+JointVector ClosedFormInverse::solve_near_unlimited(const Pose& pose_base_tool,
+                                                    const JointVector& near) const {
   require_pose(pose_base_tool);
   require_joints(near, 6, "near");
   std::optional<JointVector> best;
-  for (const WristBranch& branch : branches(pose_base_tool, near)) {
+  const ClosedSolutions closed = branches(pose_base_tool, near);
+  for (const ClosedBranch& branch : closed.branches) {
     const JointVector q = turns_.unlimited(branch.q, near);
     if (!best || is_nearer(q, *best, near)) best = q;
   }
+  if (!best) return numerical_.solve_near_unlimited(pose_base_tool, near);
   return *best;
 }
 
-std::vector<JointVector> SphericalWristInverse::solve_all(const Eigen::Vector3d& position) const {
-  return position_.solve_all(position);
+std::vector<JointVector> ClosedFormInverse::solve_all(const Eigen::Vector3d& position) const {
+  return numerical_.solve_all(position);
 }
 
-JointVector SphericalWristInverse::solve_near(const Eigen::Vector3d& position,
-                                              const JointVector& near) const {
-  return position_.solve_near(position, near);
+JointVector ClosedFormInverse::solve_near(const Eigen::Vector3d& position,
+                                          const JointVector& near) const {
+  return numerical_.solve_near(position, near);
 }
 
 }  // namespace viapoint

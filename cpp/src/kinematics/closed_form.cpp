@@ -1,0 +1,88 @@
+#include "kinematics/closed_form.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kinematics/parallel_wrist.hpp"
+#include "kinematics/spherical_wrist.hpp"
+#include "viapoint/core/units.hpp"
+
+namespace viapoint {
+
+std::unique_ptr<const ClosedForm> recognise_closed_form(const ForwardKinematics& forward) {
+  if (auto arm = SphericalWrist::recognise(forward)) {
+    return std::make_unique<SphericalWrist>(*arm);
+  }
+  if (auto arm = ParallelWrist::recognise(forward)) return std::make_unique<ParallelWrist>(*arm);
+  return nullptr;
+}
+
+Elbow bend_elbow(double a, double b, double reach) {
+  const double stretched = (a + b) - reach;
+  const double folded = reach - std::abs(a - b);
+  const double missing = std::max(-stretched, -folded);
+  if (missing > kBoundary) return {false, 0.0, missing};
+  // 1 − cos γ = (a + b − r)(a + b + r)/2ab and 1 + cos γ = (r − |a − b|)(r + |a − b|)/2ab: the
+  // factors vanish at the boundary, so that no digits are lost there.
+  const double one_minus = std::max(stretched, 0.0) * (a + b + reach);
+  const double one_plus = std::max(folded, 0.0) * (reach + std::abs(a - b));
+  return {true, 2.0 * std::atan2(std::sqrt(one_minus), std::sqrt(one_plus)), 0.0};
+}
+
+std::vector<ShoulderBranch> turn_shoulder(double x, double y, double side, double held,
+                                          double& out_of_reach) {
+  const double radius = std::hypot(x, y);
+  const double inside = radius - std::abs(side);
+  if (inside < -kBoundary) {
+    out_of_reach = -inside;
+    return {};
+  }
+  const double forward = std::sqrt(std::max(inside, 0.0) * (radius + std::abs(side)));
+  const auto branch = [&](double ahead) {
+    const double q1 = radius < kOnAxis ? held : std::atan2(y, x) - std::atan2(side, ahead);
+    return ShoulderBranch{ahead, q1};
+  };
+  if (forward == 0.0) return {branch(0.0)};  // both shoulders are one
+  return {branch(forward), branch(-forward)};
+}
+
+std::optional<Eigen::Vector3d> nearest_point(const Eigen::Vector3d& origin_a,
+                                             const Eigen::Vector3d& axis_a,
+                                             const Eigen::Vector3d& origin_b,
+                                             const Eigen::Vector3d& axis_b) {
+  const Eigen::Vector3d normal = axis_a.cross(axis_b);
+  const double square = normal.squaredNorm();
+  if (square < 1e-6) return std::nullopt;
+  const double along = (origin_b - origin_a).cross(axis_b).dot(normal) / square;
+  return origin_a + along * axis_a;
+}
+
+Pose shoulder_frame(const ChainFrames& zero) {
+  const Eigen::Vector3d& turn = zero.axis[0];
+  Pose frame = Pose::Identity();
+  frame.linear().col(2) = turn;
+  frame.linear().col(1) = (zero.axis[1] - turn.dot(zero.axis[1]) * turn).normalized();
+  frame.linear().col(0) = frame.linear().col(1).cross(turn);
+  frame.translation() = zero.origin[0] + turn.dot(zero.origin[1] - zero.origin[0]) * turn;
+  return frame;
+}
+
+Eigen::Matrix3d about_y(double angle) {
+  const double c = std::cos(angle);
+  const double s = std::sin(angle);
+  Eigen::Matrix3d out;
+  out << c, 0.0, s, 0.0, 1.0, 0.0, -s, 0.0, c;
+  return out;
+}
+
+Eigen::Matrix3d about_z(double angle) {
+  const double c = std::cos(angle);
+  const double s = std::sin(angle);
+  Eigen::Matrix3d out;
+  out << c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0;
+  return out;
+}
+
+double from_half_turns(double angle) { return std::abs(std::remainder(angle, kPi)); }
+
+}  // namespace viapoint
