@@ -44,6 +44,11 @@ void Interpolator::wish(Wish wish) noexcept VIAPOINT_NONBLOCKING {
   if (wish_ != Wish::kStop) wish_ = wish;
 }
 
+void Interpolator::abandon() noexcept VIAPOINT_NONBLOCKING {
+  motion_ = nullptr;
+  run_state_ = RunState::kFault;
+}
+
 double Interpolator::target() const noexcept { return wish_ == Wish::kRun ? override_ : 0.0; }
 
 RunState Interpolator::tick(Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKING {
@@ -58,7 +63,10 @@ RunState Interpolator::tick(Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKING {
     return run_state_;
   }
   const bool untouched = now_.tau == 0.0 && !governor_.changing();
-  if (untouched) now_.rate = target();
+  if (untouched) {
+    now_.rate = target();
+    since_anchor_ = 0;
+  }
 
   lookahead_.advance(now_.tau, kCellsACycle);
   const double curvature = governor_.decide(now_, target(), lookahead_);

@@ -17,8 +17,9 @@ constexpr double kMaxRateStep = 0.05;
 constexpr double kCyclesToMaxSlope = 4.0;
 /// A second, weaker step back for what the linear estimate of the room did not see.
 constexpr double kWeaker = 0.9;
-/// Pushes tried a cycle.
+/// Pushes tried a cycle, and by how much each comes nearer to the proven one than the one before.
 constexpr int kTrials = 5;
+constexpr std::array<double, kTrials> kShrink = {0.8, 0.5, 0.5, 0.5, 0.0};
 
 Range product(const Range& a, const Range& b) noexcept {
   const double p1 = a.low * b.low, p2 = a.low * b.high, p3 = a.high * b.low, p4 = a.high * b.high;
@@ -113,6 +114,7 @@ RateState RateGovernor::advance(const RateState& now) noexcept VIAPOINT_NONBLOCK
     next.rate = std::abs(plan_.end_rate - wanted_) <= kSameRate ? wanted_ : plan_.end_rate;
   }
   next.rate = std::clamp(next.rate, 0.0, 1.0);
+  next.tau = std::max(next.tau, now.tau);  // rounding, at a rate of next to nothing
   return next;
 }
 
@@ -126,17 +128,24 @@ void RateGovernor::improve(const RateState& now, double target,
   Stretch stretch;
   const double furthest = now.tau + cycle_ * (now.rate + cycle_ * max_slope_);
   if (!lookahead.ranges(now.tau, furthest, stretch.path)) return;
-  if (!stretch.take(now, now, 0.0)) return;
-  Range curvature{std::max(-max_curvature_, (-max_slope_ - now.slope) / cycle_),
-                  std::min(max_curvature_, (max_slope_ - now.slope) / cycle_)};
-  if (!room(stretch, cycle_, curvature)) return;
+  const Range allowed{std::max(-max_curvature_, (-max_slope_ - now.slope) / cycle_),
+                      std::min(max_curvature_, (max_slope_ - now.slope) / cycle_)};
   // One cycle of γ and its undoing move the rate by at least γ cycle².
-  double push = std::clamp(base + missing / (cycle_ * cycle_), curvature.low, curvature.high);
+  const double wanted = base + missing / (cycle_ * cycle_);
+  double push = 0.0;
+  // Again, because the push itself raises the rate within the cycle.
+  for (int pass = 0; pass < 2; ++pass) {
+    Range curvature = allowed;
+    stretch.slope = {now.slope, now.slope};
+    stretch.rate = hull(now.rate, std::clamp(now.after(cycle_, push).rate, 0.0, 1.0));
+    if (!room(stretch, cycle_, curvature)) return;
+    push = std::clamp(wanted, curvature.low, curvature.high);
+  }
 
   for (int trial = 0; trial < kTrials; ++trial) {
     if ((push - base) * missing <= 0.0) return;
     if (!prove(now, push, lookahead, trial_)) {
-      push = base + 0.5 * (push - base);
+      push = base + kShrink[static_cast<std::size_t>(trial)] * (push - base);
       continue;
     }
     const double still_missing = target - trial_.end_rate;
@@ -171,18 +180,20 @@ bool RateGovernor::prove(RateState state, double push, const Lookahead& lookahea
 
 bool RateGovernor::step_back(RateState& state, const Lookahead& lookahead,
                              Plan& plan) const noexcept VIAPOINT_NONBLOCKING {
-  const double time = stride_ * cycle_;
+  const double longest = stride_ * cycle_;
   Stretch stretch;
   const double furthest =
-      state.tau + std::max(0.0, time * (state.rate + 0.5 * time * std::max(0.0, state.slope)));
+      state.tau + longest * (state.rate + 0.5 * longest * std::max(0.0, state.slope));
   if (!lookahead.ranges(state.tau, furthest, stretch.path)) return false;
-  if (!stretch.take(state, state, 0.0)) return false;
 
   // Straight back to slope 0 where that is allowed; never past it, nor away from it unless forced.
   const double wanted = -state.slope / cycle_;
   const auto strongest = [&](int cycles, double& gamma) {
+    const double time = cycles * cycle_;
+    stretch.slope = {state.slope, state.slope};
+    stretch.rate = {state.rate, std::min(1.0, state.rate + time * std::max(0.0, state.slope))};
     Range curvature{-max_curvature_, max_curvature_};
-    if (!room(stretch, cycles * cycle_, curvature)) return false;
+    if (!room(stretch, time, curvature)) return false;
     gamma = std::clamp(wanted, curvature.low, curvature.high);
     return true;
   };
@@ -243,10 +254,12 @@ bool RateGovernor::within_limits(const Stretch& stretch) const noexcept VIAPOINT
 bool RateGovernor::room(const Stretch& stretch, double time,
                         Range& curvature) const noexcept VIAPOINT_NONBLOCKING {
   const Range& rate = stretch.rate;
-  const Range cube{rate.low * rate.low * rate.low, rate.high * rate.high * rate.high};
+  const Range square{rate.low * rate.low, rate.high * rate.high};
+  const Range cube{square.low * rate.low, square.high * rate.high};
   for (int j = 0; j < joints_; ++j) {
     const auto i = static_cast<std::size_t>(j);
-    // q⃛ = q'''ρ³ + 3q''ρ(α + γt) + q'γ is linear in γ; its worst is at the start or the end.
+    // q̈ = q''ρ² + q'(α + γt) and
+    // q⃛ = q'''ρ³ + 3q''ρ(α + γt) + q'γ are linear in γ; their worst is at the start or the end.
     const Range nominal = product(stretch.path.third[i], cube);
     const Range mixed = product(stretch.path.second[i], {3.0 * rate.low, 3.0 * rate.high});
     const Range turn = product(mixed, stretch.slope);
@@ -254,6 +267,14 @@ bool RateGovernor::room(const Stretch& stretch, double time,
     const Range end{start.low + time * mixed.low, start.high + time * mixed.high};
     // Half the slack, so that the strongest push passes within_limits() in spite of rounding.
     const double jerk = limits_.jerk[j] * (1.0 + 0.5 * kRounding);
+    const Range drift = product(stretch.path.second[i], square);
+    const Range push = product(start, stretch.slope);
+    const double acceleration = limits_.acceleration[j] * (1.0 + 0.5 * kRounding);
+    const Range gain{time * start.low, time * start.high};
+    if (!narrow(curvature, gain, acceleration - drift.high - push.high)) return false;
+    if (!narrow(curvature, {-gain.high, -gain.low}, acceleration + drift.low + push.low)) {
+      return false;
+    }
     for (const Range& factor : {start, end}) {
       if (!narrow(curvature, factor, jerk - nominal.high - turn.high)) return false;
       if (!narrow(curvature, {-factor.high, -factor.low}, jerk + nominal.low + turn.low)) {

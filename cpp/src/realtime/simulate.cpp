@@ -12,6 +12,9 @@ namespace {
 /// A command this little after a cycle belongs to it [s].
 constexpr double kCommandSlack = 1e-9;
 
+/// A run that takes longer is a mistake, and would fill the memory.
+constexpr std::uint64_t kMostCycles = 10'000'000;
+
 void check(const TimedCommand& command) {
   if (!std::isfinite(command.time) || command.time < 0.0) {
     throw MotionError(ErrorCode::kBadArgument, "a command's time is " +
@@ -64,6 +67,12 @@ std::vector<LogRecord> simulate(const Trajectory& trajectory, const JointLimits&
   std::vector<LogRecord> log;
   auto next = commands.begin();
   for (std::uint64_t k = 0; interpolator.active(); ++k) {
+    if (k >= kMostCycles) {
+      throw MotionError(
+          ErrorCode::kBadArgument,
+          "the simulated run takes more than " + std::to_string(kMostCycles) + " cycles",
+          {"give a larger override", "resume a pause earlier"});
+    }
     const double now = static_cast<double>(k) * seconds;
     for (; next != commands.end() && next->time <= now + kCommandSlack; ++next) {
       apply(*next, interpolator);

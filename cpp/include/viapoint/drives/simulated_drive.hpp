@@ -7,7 +7,7 @@
 
 namespace viapoint {
 
-/// An arm that is where it was told one cycle before. Starts at `start`.
+/// An arm that is where it was told one cycle before. Starts at `start`. No inputs.
 class SimulatedDrive final : public Drive {
  public:
   explicit SimulatedDrive(const JointVector& start);
@@ -19,6 +19,7 @@ class SimulatedDrive final : public Drive {
 
  private:
   Measurement measurement_;
+  JointVector told_;  ///< setpoint of the cycle before
 };
 
 }  // namespace viapoint

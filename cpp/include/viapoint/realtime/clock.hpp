@@ -14,6 +14,9 @@ class Clock {
   [[nodiscard]] virtual std::int64_t now() const noexcept = 0;
   /// Sleeps until `instant` [ns]. Real-time: safe (the cycle's one system call).
   virtual void sleep_until(std::int64_t instant) noexcept = 0;
+  /// True where time passes by sleeping only: a loop on such a clock may wait for its companion
+  /// without being late, and needs no real-time rights.
+  [[nodiscard]] virtual bool is_virtual() const noexcept { return false; }
 };
 
 /// CLOCK_MONOTONIC with absolute clock_nanosleep.
@@ -30,6 +33,7 @@ class VirtualClock final : public Clock {
   void sleep_until(std::int64_t instant) noexcept override {
     if (instant > now_) now_ = instant;
   }
+  [[nodiscard]] bool is_virtual() const noexcept override { return true; }
 
  private:
   std::int64_t now_ = 0;

@@ -18,17 +18,20 @@ namespace viapoint {
 
 struct LoopOptions {
   std::chrono::nanoseconds cycle{2'000'000};
-  int priority = 80;         ///< SCHED_FIFO
-  bool lock_memory = true;   ///< mlockall
+  int priority = 80;        ///< SCHED_FIFO
+  bool lock_memory = true;  ///< mlockall
 };
 
 /// Figures of one run.
 struct RunReport {
   std::uint64_t cycles = 0;
-  std::uint64_t overruns = 0;           ///< cycles that woke a whole cycle late or more
+  std::uint64_t overruns = 0;  ///< cycles that woke a whole cycle late or more
   double latency_p50 = 0.0, latency_p99 = 0.0, latency_max = 0.0;  ///< wake-up [s]
   double compute_p50 = 0.0, compute_p99 = 0.0, compute_max = 0.0;  ///< the tick itself [s]
-  double wall_time = 0.0;               ///< first to last cycle [s]
+  double wall_time = 0.0;                                          ///< first to last cycle [s]
+  /// Cycles of the clock that overruns slept through: the run is later by so many.
+  std::uint64_t missed_cycles = 0;
+  std::uint64_t lost_records = 0;  ///< cycles that found no room in the log
 };
 
 /// One motion under way. All methods from any ordinary thread.

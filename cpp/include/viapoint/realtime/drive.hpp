@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "viapoint/core/joint_vector.hpp"
 
@@ -11,13 +12,13 @@ namespace viapoint {
 /// What the arm is told, once a cycle.
 struct Setpoint {
   std::uint64_t cycle = 0;
-  JointVector q, qd, qdd, qddd;   ///< (n,) [rad or m, and per s, s², s³]
-  std::uint64_t outputs = 0;      ///< digital outputs, bit i is output i
+  JointVector q, qd, qdd, qddd;  ///< (n,) [rad or m, and per s, s², s³]
+  std::uint64_t outputs = 0;     ///< digital outputs, bit i is output i
 };
 
 /// What the arm tells, once a cycle.
 struct Measurement {
-  JointVector q;                  ///< (n,) [rad or m]
+  JointVector q;  ///< (n,) [rad or m]
   std::uint64_t inputs = 0;
 };
 
@@ -35,6 +36,9 @@ class Drive {
   [[nodiscard]] virtual DriveStatus exchange(const Setpoint& setpoint,
                                              Measurement& measurement) noexcept = 0;
   virtual void release() noexcept = 0;
+  /// What went wrong, once exchange() has returned kFault; it is not called again after that.
+  /// Real-time: not.
+  [[nodiscard]] virtual std::string fault() const { return "the drive reported a fault"; }
 };
 
 }  // namespace viapoint

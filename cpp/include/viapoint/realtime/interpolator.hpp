@@ -42,6 +42,9 @@ class Interpolator {
   void set_override(double share) noexcept VIAPOINT_NONBLOCKING;
   void wish(Wish wish) noexcept VIAPOINT_NONBLOCKING;
 
+  /// Drops the motion on the spot, for a drive that has failed; then state kFault.
+  void abandon() noexcept VIAPOINT_NONBLOCKING;
+
   /// One cycle: fills in the setpoint due now and moves on. Returns the state it belongs to:
   /// kFinished with the end point, kStopped with the first setpoint at rest after a stop.
   RunState tick(Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKING;

@@ -15,7 +15,7 @@ enum class RunState : std::uint8_t {
   kPausing,
   kPaused,
   kStopping,
-  kStopped,   ///< came to rest on the path before its end
+  kStopped,  ///< came to rest on the path before its end
   kFinished,
   kFault,
 };
@@ -24,17 +24,17 @@ enum class RunState : std::uint8_t {
 
 /// One cycle as it was executed: fixed size, goes through a lock-free ring to an ordinary thread.
 struct LogRecord {
-  std::uint64_t cycle = 0;         ///< from the start of the run
-  std::int64_t stamp = 0;          ///< clock at wake-up [ns], CLOCK_MONOTONIC on the machine's clock
-  std::int64_t latency = 0;        ///< wake-up after its due instant [ns]
-  std::int64_t compute = 0;        ///< the tick's own computing time [ns]
-  double nominal_time = 0.0;       ///< τ along the motion [s]
-  double rate = 0.0;               ///< dτ/dt
-  std::int32_t move = -1;          ///< program step under way
+  std::uint64_t cycle = 0;    ///< from the start of the run
+  std::int64_t stamp = 0;     ///< clock at wake-up [ns], CLOCK_MONOTONIC on the machine's clock
+  std::int64_t latency = 0;   ///< wake-up after its due instant [ns]
+  std::int64_t compute = 0;   ///< the tick's own computing time [ns]
+  double nominal_time = 0.0;  ///< τ along the motion [s]
+  double rate = 0.0;          ///< dτ/dt
+  std::int32_t move = -1;     ///< program step under way
   RunState state = RunState::kIdle;
   std::uint64_t outputs = 0;
-  JointVector q, qd, qdd, qddd;    ///< setpoint (derivatives by real time, not nominal time)
-  JointVector measured;            ///< what the drive reported
+  JointVector q, qd, qdd, qddd;  ///< setpoint (derivatives by real time, not nominal time)
+  JointVector measured;          ///< what the drive reported
 };
 
 }  // namespace viapoint

@@ -1,0 +1,61 @@
+/// @file
+/// The real-time boundary: finished motions cross it one way, spent ones come back.
+#pragma once
+
+#include <atomic>
+#include <boost/lockfree/spsc_queue.hpp>
+#include <cstdint>
+#include <memory>
+
+#include "viapoint/realtime/interpolator.hpp"
+#include "viapoint/realtime/motion_log.hpp"
+#include "viapoint/realtime/nonblocking.hpp"
+#include "viapoint/trajectory/trajectory.hpp"
+
+namespace viapoint {
+
+/// One motion on its way through the loop, and what both sides of the boundary say about it while
+/// it runs. Owned by an ordinary thread until it has come back.
+struct QueuedMotion {
+  std::shared_ptr<const Trajectory> trajectory;  ///< constant; only ordinary threads copy it
+
+  std::atomic<Wish> wish{Wish::kRun};               ///< written by ordinary threads
+  std::atomic<RunState> state{RunState::kRunning};  ///< the rest is written by the tick
+  std::atomic<double> nominal_time{0.0};
+  std::atomic<std::int32_t> move{-1};
+  std::atomic<std::uint64_t> overruns{0};
+  std::atomic<std::uint64_t> missed_cycles{0};
+  std::atomic<std::uint64_t> lost_records{0};
+};
+
+/// Bounded, lock-free, one producer and one consumer each way.
+///
+/// What goes through are whole motions, by pointer to their immutable pieces, and not pieces one by
+/// one: every piece is in memory before its motion starts, so the tick sees as far ahead as it
+/// needs to prove a stop, nothing has to be fed while the arm moves, and a late feeder cannot
+/// starve it. Nothing is copied or freed on the real-time side whatever the number of pieces.
+class MotionQueue {
+ public:
+  static constexpr int kCapacity = 8;
+
+  /// Ordinary side. False when full.
+  [[nodiscard]] bool push(QueuedMotion* motion) { return waiting_.push(motion); }
+  /// Ordinary side: a motion that the tick is done with, or null.
+  [[nodiscard]] QueuedMotion* take_back() {
+    QueuedMotion* motion = nullptr;
+    return spent_.pop(motion) ? motion : nullptr;
+  }
+  /// Real-time side: the next motion, or null.
+  [[nodiscard]] QueuedMotion* pop() noexcept VIAPOINT_NONBLOCKING {
+    QueuedMotion* motion = nullptr;
+    return waiting_.pop(motion) ? motion : nullptr;
+  }
+  /// Real-time side. There is always room: no more can come back than fitted in.
+  void give_back(QueuedMotion* motion) noexcept VIAPOINT_NONBLOCKING { spent_.push(motion); }
+
+ private:
+  using Ring = boost::lockfree::spsc_queue<QueuedMotion*, boost::lockfree::capacity<kCapacity>>;
+  Ring waiting_, spent_;
+};
+
+}  // namespace viapoint

@@ -1,0 +1,195 @@
+#include "viapoint/realtime/controller_loop.hpp"
+
+#include <array>
+#include <cmath>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include "realtime/cycle_runner.hpp"
+#include "realtime/loop_job.hpp"
+#include "realtime/realtime_rights.hpp"
+#include "viapoint/core/error.hpp"
+
+namespace viapoint {
+namespace {
+
+/// How often the companion looks for news.
+constexpr std::chrono::milliseconds kCompanionPeriod{2};
+constexpr std::chrono::microseconds kVirtualCompanionPeriod{100};
+
+/// Enabled on construction, released on destruction, also when the loop cannot be built.
+class PoweredDrive {
+ public:
+  explicit PoweredDrive(std::unique_ptr<Drive> drive)
+      : drive_(std::move(drive)), start_(drive_->enable()) {}
+  ~PoweredDrive() { drive_->release(); }
+  PoweredDrive(const PoweredDrive&) = delete;
+  PoweredDrive& operator=(const PoweredDrive&) = delete;
+
+  [[nodiscard]] Drive& drive() { return *drive_; }
+  [[nodiscard]] const Measurement& start() const { return start_; }
+
+ private:
+  std::unique_ptr<Drive> drive_;
+  Measurement start_;
+};
+
+std::unique_ptr<Drive> checked(std::unique_ptr<Drive> drive, const JointLimits& limits,
+                               const LoopOptions& options) {
+  limits.validate();
+  if (drive == nullptr) throw MotionError(ErrorCode::kBadArgument, "there is no drive to run");
+  if (drive->joints() != limits.joints()) {
+    throw MotionError(ErrorCode::kBadArgument, "the drive has " + std::to_string(drive->joints()) +
+                                                   " joints, the limits are for " +
+                                                   std::to_string(limits.joints()));
+  }
+  if (options.cycle.count() <= 0) {
+    throw MotionError(
+        ErrorCode::kBadArgument,
+        "the cycle is " + std::to_string(options.cycle.count()) + " ns; it must be positive");
+  }
+  return drive;
+}
+
+}  // namespace
+
+struct ControllerLoop::Impl {
+  Impl(std::unique_ptr<Drive> drive, const JointLimits& joint_limits, const LoopOptions& options,
+       std::unique_ptr<Clock> loop_clock)
+      : limits(joint_limits),
+        powered(checked(std::move(drive), joint_limits, options)),
+        clock(std::move(loop_clock)),
+        channels(limits.joints()),
+        runner(powered.drive(), *clock, channels, limits, options.cycle, powered.start()) {
+    if (powered.start().q.size() != limits.joints() || !powered.start().q.allFinite()) {
+      throw MotionError(ErrorCode::kDriveFault,
+                        "the drive does not tell where each joint stands after it was enabled");
+    }
+    channels.snapshot.write(powered.start().q, powered.start());
+    if (options.lock_memory && !clock->is_virtual()) memory = lock_memory(shortcomings);
+    companion = std::thread([this] { accompany(); });
+    loop = std::thread([this] {
+      prepare_loop_thread();
+      runner.run();
+    });
+    if (!clock->is_virtual()) raise_priority(loop, options.priority, shortcomings);
+  }
+
+  ~Impl() {
+    bring_to_rest();
+    channels.quit.store(true, std::memory_order_release);
+    loop.join();
+    companion.join();
+  }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+
+  void bring_to_rest() {
+    const std::lock_guard lock(admission);
+    if (job == nullptr) return;
+    job->stop();
+    while (!job->ended()) std::this_thread::sleep_for(kCompanionPeriod);
+  }
+
+  [[nodiscard]] bool busy() const { return job != nullptr && !job->ended(); }
+
+  /// Carries the log out of the real-time part, and takes back what is spent.
+  void accompany() {
+    block_signals();
+    while (!channels.quit.load(std::memory_order_acquire)) {
+      // Before the log: what came back has all its records in the ring.
+      const QueuedMotion* spent = channels.motions.take_back();
+      drain_log();
+      if (spent != nullptr) {
+        const bool fault = spent->state.load(std::memory_order_acquire) == RunState::kFault;
+        present_job()->end(fault ? powered.drive().fault() : std::string());
+      }
+      if (clock->is_virtual()) {
+        std::this_thread::sleep_for(kVirtualCompanionPeriod);
+      } else {
+        std::this_thread::sleep_for(kCompanionPeriod);
+      }
+    }
+  }
+
+  void drain_log() {
+    std::array<LogRecord, 64> batch;
+    while (const std::size_t count = channels.log.pop(batch.data(), batch.size())) {
+      present_job()->append({batch.data(), count});
+    }
+  }
+
+  [[nodiscard]] std::shared_ptr<LoopJob> present_job() const {
+    const std::lock_guard lock(job_mutex);
+    return job;
+  }
+
+  JointLimits limits;
+  PoweredDrive powered;
+  std::unique_ptr<Clock> clock;
+  LoopChannels channels;
+  CycleRunner runner;
+  MemoryLock memory;
+  std::vector<std::string> shortcomings;
+
+  mutable std::mutex admission;  ///< one thread at a time feeds the queue
+  mutable std::mutex job_mutex;  ///< guards the pointer `job`
+  std::shared_ptr<LoopJob> job;  ///< the last run; written under both locks
+
+  std::thread companion, loop;
+};
+
+ControllerLoop::ControllerLoop(std::unique_ptr<Drive> drive, const JointLimits& limits,
+                               LoopOptions options, std::unique_ptr<Clock> clock)
+    : impl_(std::make_unique<Impl>(std::move(drive), limits, options, std::move(clock))) {}
+
+ControllerLoop::~ControllerLoop() = default;
+
+std::shared_ptr<Job> ControllerLoop::run(std::shared_ptr<const Trajectory> trajectory) {
+  const std::lock_guard lock(impl_->admission);
+  if (trajectory == nullptr) throw MotionError(ErrorCode::kBadArgument, "there is no motion");
+  if (impl_->channels.faulted.load(std::memory_order_acquire)) {
+    throw MotionError(ErrorCode::kDriveFault, impl_->powered.drive().fault(),
+                      {"clear the fault at the drive, then connect again"});
+  }
+  if (impl_->busy()) {
+    throw MotionError(ErrorCode::kBusy, "a run is already under way",
+                      {"wait for its end", "stop it first"});
+  }
+  admit(*trajectory, impl_->limits, position());
+  auto job = std::make_shared<LoopJob>(std::move(trajectory));
+  {
+    const std::lock_guard job_lock(impl_->job_mutex);
+    impl_->job = job;
+  }
+  if (!impl_->channels.motions.push(job->motion())) {
+    throw MotionError(ErrorCode::kInternal, "the queue of motions is full although none runs");
+  }
+  return job;
+}
+
+void ControllerLoop::set_override(double share) {
+  if (!(share >= 0.0 && share <= 1.0)) {
+    throw MotionError(ErrorCode::kBadArgument,
+                      "the override is " + std::to_string(share) + "; it must lie in [0, 1]");
+  }
+  impl_->channels.override_share.store(share, std::memory_order_relaxed);
+}
+
+double ControllerLoop::override_share() const {
+  return impl_->channels.override_share.load(std::memory_order_relaxed);
+}
+
+Measurement ControllerLoop::measured() const { return impl_->channels.snapshot.read().measurement; }
+
+bool ControllerLoop::busy() const {
+  const auto job = impl_->present_job();
+  return job != nullptr && !job->ended();
+}
+
+JointVector ControllerLoop::position() const { return impl_->channels.snapshot.read().position; }
+
+std::vector<std::string> ControllerLoop::shortcomings() const { return impl_->shortcomings; }
+
+}  // namespace viapoint

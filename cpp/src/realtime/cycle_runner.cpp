@@ -1,0 +1,101 @@
+#include "realtime/cycle_runner.hpp"
+
+#include <chrono>
+#include <thread>
+
+namespace viapoint {
+
+CycleRunner::CycleRunner(Drive& drive, Clock& clock, LoopChannels& channels,
+                         const JointLimits& limits, std::chrono::nanoseconds cycle,
+                         const Measurement& start)
+    : drive_(drive),
+      clock_(clock),
+      channels_(channels),
+      interpolator_(limits, cycle, start.q),
+      cycle_(cycle.count()),
+      measurement_(start) {
+  setpoint_.q = start.q;
+}
+
+void CycleRunner::run() noexcept {
+  due_ = clock_.now();
+  while (!channels_.quit.load(std::memory_order_acquire)) {
+    wait_for_cycle();
+    do_cycle();
+    if (clock_.is_virtual()) let_others_run();
+  }
+}
+
+void CycleRunner::wait_for_cycle() noexcept {
+  // Cycles slept through are gone: the grid goes on from the wake-up.
+  due_ += (1 + late_cycles_) * cycle_;
+  clock_.sleep_until(due_);
+  woke_ = clock_.now();
+  late_cycles_ = (woke_ - due_) / cycle_;
+}
+
+void CycleRunner::do_cycle() noexcept VIAPOINT_NONBLOCKING {
+  if (channels_.faulted.load(std::memory_order_relaxed)) return;
+  if (motion_ == nullptr && (motion_ = channels_.motions.pop()) != nullptr) {
+    interpolator_.set_override(channels_.override_share.load(std::memory_order_relaxed));
+    interpolator_.begin(*motion_->trajectory);
+    cycle_of_run_ = 0;
+  }
+  interpolator_.set_override(channels_.override_share.load(std::memory_order_relaxed));
+  if (motion_ != nullptr) interpolator_.wish(motion_->wish.load(std::memory_order_acquire));
+
+  const std::int64_t begin = clock_.now();
+  RunState state = interpolator_.tick(setpoint_);
+  const std::int64_t end = clock_.now();
+  if (drive_.exchange(setpoint_, measurement_) == DriveStatus::kFault) {
+    interpolator_.abandon();
+    state = RunState::kFault;
+  }
+  channels_.snapshot.write(setpoint_.q, measurement_);
+
+  if (motion_ != nullptr) {
+    record_.cycle = cycle_of_run_++;
+    record_.stamp = woke_;
+    record_.latency = woke_ - due_;
+    record_.compute = end - begin;
+    record_.nominal_time = interpolator_.nominal_time();
+    record_.rate = interpolator_.rate();
+    record_.move = interpolator_.move();
+    record_.state = state;
+    record_.outputs = setpoint_.outputs;
+    record_.q = setpoint_.q;
+    record_.qd = setpoint_.qd;
+    record_.qdd = setpoint_.qdd;
+    record_.qddd = setpoint_.qddd;
+    record_.measured = measurement_.q;
+    finish(state);
+  }
+  if (state == RunState::kFault) channels_.faulted.store(true, std::memory_order_release);
+}
+
+void CycleRunner::finish(RunState state) noexcept VIAPOINT_NONBLOCKING {
+  QueuedMotion& motion = *motion_;
+  if (!channels_.log.push(record_)) motion.lost_records.fetch_add(1, std::memory_order_relaxed);
+  if (late_cycles_ > 0) {
+    motion.overruns.fetch_add(1, std::memory_order_relaxed);
+    motion.missed_cycles.fetch_add(static_cast<std::uint64_t>(late_cycles_),
+                                   std::memory_order_relaxed);
+  }
+  motion.nominal_time.store(record_.nominal_time, std::memory_order_relaxed);
+  motion.move.store(record_.move, std::memory_order_relaxed);
+  motion.state.store(state, std::memory_order_release);
+  const bool over =
+      state == RunState::kFinished || state == RunState::kStopped || state == RunState::kFault;
+  if (!over) return;
+  motion_ = nullptr;
+  channels_.motions.give_back(&motion);
+}
+
+void CycleRunner::let_others_run() noexcept {
+  // Virtual time passes slowly without a motion, and waits for the reader of the log.
+  constexpr std::chrono::microseconds kPause{200};
+  if (motion_ == nullptr) std::this_thread::sleep_for(kPause);
+  while (channels_.log.write_available() == 0) std::this_thread::sleep_for(kPause);
+}
+
+}  // namespace viapoint

@@ -1,0 +1,62 @@
+/// @file
+/// The real-time thread's work: one cycle after another.
+#pragma once
+
+#include <atomic>
+#include <boost/lockfree/spsc_queue.hpp>
+#include <cstdint>
+
+#include "realtime/snapshot.hpp"
+#include "viapoint/realtime/clock.hpp"
+#include "viapoint/realtime/drive.hpp"
+#include "viapoint/realtime/interpolator.hpp"
+#include "viapoint/realtime/motion_queue.hpp"
+
+namespace viapoint {
+
+/// What the loop's threads share. Each member says who writes it.
+struct LoopChannels {
+  explicit LoopChannels(int joints) : snapshot(joints) {}
+
+  MotionQueue motions;
+  /// Eight seconds at 500 Hz for the companion to come round.
+  boost::lockfree::spsc_queue<LogRecord, boost::lockfree::capacity<4096>> log;
+  Snapshot snapshot;                        ///< tick
+  std::atomic<double> override_share{1.0};  ///< ordinary threads
+  std::atomic<bool> quit{false};            ///< ordinary threads
+  std::atomic<bool> faulted{false};         ///< tick
+};
+
+/// Exactly one setpoint a cycle, in step with the clock. After a late wake-up the next setpoint is
+/// the next of the motion, and the cycles that were slept through are left out of the grid: the arm
+/// is late then, and never jumps. Threads: one.
+class CycleRunner {
+ public:
+  /// @param start the arm's position, at rest
+  CycleRunner(Drive& drive, Clock& clock, LoopChannels& channels, const JointLimits& limits,
+              std::chrono::nanoseconds cycle, const Measurement& start);
+
+  /// Until channels.quit.
+  void run() noexcept;
+
+ private:
+  void wait_for_cycle() noexcept;
+  void do_cycle() noexcept VIAPOINT_NONBLOCKING;
+  void finish(RunState state) noexcept VIAPOINT_NONBLOCKING;
+  void let_others_run() noexcept;
+
+  Drive& drive_;
+  Clock& clock_;
+  LoopChannels& channels_;
+  Interpolator interpolator_;
+  std::int64_t cycle_;
+  std::int64_t due_ = 0, woke_ = 0;
+  std::int64_t late_cycles_ = 0;  ///< whole cycles that the last wake-up came late
+  QueuedMotion* motion_ = nullptr;
+  std::uint64_t cycle_of_run_ = 0;
+  Setpoint setpoint_;
+  Measurement measurement_;
+  LogRecord record_;
+};
+
+}  // namespace viapoint

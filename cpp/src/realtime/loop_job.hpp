@@ -1,0 +1,54 @@
+/// @file
+/// One run as ordinary threads see it.
+#pragma once
+
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "viapoint/realtime/controller_loop.hpp"
+#include "viapoint/realtime/motion_queue.hpp"
+
+namespace viapoint {
+
+/// Outlives the loop it ran in. Threads: any.
+class LoopJob final : public Job {
+ public:
+  explicit LoopJob(std::shared_ptr<const Trajectory> trajectory);
+
+  bool wait(double timeout) override;
+  void pause() override { wish(Wish::kPause); }
+  void resume() override { wish(Wish::kRun); }
+  void stop() override { wish(Wish::kStop); }
+  [[nodiscard]] RunState state() const override { return motion_.state; }
+  [[nodiscard]] double nominal_time() const override { return motion_.nominal_time; }
+  [[nodiscard]] double duration() const override { return motion_.trajectory->duration(); }
+  [[nodiscard]] std::uint64_t overruns() const override { return motion_.overruns; }
+  [[nodiscard]] int move() const override { return motion_.move; }
+  [[nodiscard]] std::vector<LogRecord> log() const override;
+  [[nodiscard]] RunReport report() const override;
+
+  /// What crosses the real-time boundary.
+  [[nodiscard]] QueuedMotion* motion() { return &motion_; }
+  /// True once the motion has come back and its log is complete.
+  [[nodiscard]] bool ended() const;
+
+  /// For the loop's companion thread.
+  void append(std::span<const LogRecord> records);
+  void end(std::string fault);
+
+ private:
+  void wish(Wish wish);
+
+  QueuedMotion motion_;
+  mutable std::mutex mutex_;  ///< guards what follows
+  std::condition_variable changed_;
+  bool ended_ = false;
+  std::string fault_;
+  std::vector<LogRecord> log_;
+};
+
+}  // namespace viapoint
