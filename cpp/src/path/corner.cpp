@@ -27,7 +27,10 @@ constexpr int kBisections = 24;
 constexpr int kProofs = 40;
 /// A proven use of the zone that is not improved on, and how many proofs go into reaching it.
 constexpr double kFullUse = 0.992;
-constexpr int kRefinements = 6;
+constexpr int kRefinements = 12;
+/// How far a refinement goes at least, of what is open, and how much longer a cut grows at once.
+constexpr double kLeastMove = 0.02;
+constexpr double kMostGrowth = 2.0;
 constexpr double kProofShrink = 0.99;
 /// Below this turn there is next to nothing to cut, and a zone not used up is no news.
 constexpr double kCollinear = 1.0 * kDegree;
@@ -128,6 +131,7 @@ class CornerFit {
     double best_proven = 0.0;
     double proven_chord = 0.0;
     double refused_chord = std::numeric_limits<double>::infinity();
+    double refused = 0.0;
     for (int attempt = 0; attempt < kProofs; ++attempt) {
       const CornerShape shape = shape_of(chord);
       if (!shape.valid(kShortestCut)) break;
@@ -139,15 +143,19 @@ class CornerFit {
         proven_chord = chord;
       } else {
         refused_chord = chord;
+        refused = proven;
       }
       const bool by_room = proven_chord >= most;
       if (best && (by_room || best_proven >= kFullUse * zone_.size || attempt >= kRefinements)) {
         return finish(*best, best_proven, by_room);
       }
-      const double next = chord * std::min(2.0, kAim * zone_.size / proven);
-      const bool between = next > proven_chord && next < refused_chord;
-      chord = between ? next : 0.5 * (proven_chord + refused_chord);
-      chord = std::min(chord, most);
+      // Regula falsi between the two, towards the share of the zone aimed at.
+      const double aim = kAim * zone_.size;
+      chord = std::isfinite(refused_chord)
+                  ? proven_chord + (refused_chord - proven_chord) *
+                                       std::clamp((aim - best_proven) / (refused - best_proven),
+                                                  kLeastMove, 1.0 - kLeastMove)
+                  : std::min(most, chord * std::min(kMostGrowth, aim / proven));
     }
     return refuse("no room: a leg is too short for a corner");
   }

@@ -43,17 +43,14 @@ inline ForwardKinematics puma560() {
 
 /// Textbook §5: p = (−d3 sin θ1, d3 cos θ1, 0.5 + d2).
 inline ForwardKinematics rpp() {
-  return chain_from_dh({{0.5, 0, 0},
-                        {0, 0, -kPi / 2, JointType::kPrismatic},
-                        {0, 0, 0, JointType::kPrismatic}});
+  return chain_from_dh(
+      {{0.5, 0, 0}, {0, 0, -kPi / 2, JointType::kPrismatic}, {0, 0, 0, JointType::kPrismatic}});
 }
 
 /// Textbook §5: four axes, the tool points down.
 inline ForwardKinematics scara() {
-  return chain_from_dh({{0.4, 0.3, 0},
-                        {0, 0.25, kPi},
-                        {0, 0, 0, JointType::kPrismatic},
-                        {0.05, 0, 0}});
+  return chain_from_dh(
+      {{0.4, 0.3, 0}, {0, 0.25, kPi}, {0, 0, 0, JointType::kPrismatic}, {0.05, 0, 0}});
 }
 
 /// Textbook §5: a1 = 1, a2 = 2, in the plane.
@@ -96,8 +93,7 @@ inline JointLimits puma560_limits() {
 }
 
 inline JointLimits no_position_limits(int joints) {
-  return symmetric_limits(
-      JointVector::Constant(joints, std::numeric_limits<double>::infinity()));
+  return symmetric_limits(JointVector::Constant(joints, std::numeric_limits<double>::infinity()));
 }
 
 inline JointVector random_joints(std::mt19937& random, const JointLimits& limits) {
