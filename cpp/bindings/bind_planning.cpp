@@ -108,6 +108,17 @@ Columns sample_at(const MotionHandle& motion, const Vector& times) {
   return arrays.dict();
 }
 
+/// Timing cuts a piece of path into several of the trajectory; they share its coefficients.
+int path_pieces(const MotionHandle& motion) {
+  int count = 0;
+  const TrajectoryPiece* before = nullptr;
+  for (const TrajectoryPiece& piece : motion.trajectory->pieces()) {
+    if (before == nullptr || before->path != piece.path) ++count;
+    before = &piece;
+  }
+  return count;
+}
+
 template <typename Member>
 Vector column(const std::vector<Extremum>& extrema, Member member) {
   Vector out(static_cast<Eigen::Index>(extrema.size()));
@@ -204,6 +215,7 @@ void bind_planning(py::module_& m) {
       .def_property_readonly("joints", [](const MotionHandle& p) { return p.trajectory->joints(); })
       .def_property_readonly("pieces",
                              [](const MotionHandle& p) { return p.trajectory->pieces().size(); })
+      .def_property_readonly("path_pieces", &path_pieces)
       .def_property_readonly("certificate",
                              [](const MotionHandle& p) { return p.trajectory->certificate(); })
       .def_readonly("corners", &MotionHandle::corners)

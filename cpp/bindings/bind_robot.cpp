@@ -9,15 +9,6 @@ namespace {
 using Vector = Eigen::VectorXd;
 using Matrix = Eigen::MatrixXd;
 
-Array rows_of(const std::vector<JointVector>& solutions, int joints) {
-  Array rows({static_cast<py::ssize_t>(solutions.size()), static_cast<py::ssize_t>(joints)});
-  double* out = rows.mutable_data();
-  for (const JointVector& q : solutions) {
-    for (int i = 0; i < joints; ++i) *out++ = q[i];
-  }
-  return rows;
-}
-
 JointLimits limits_from(const Vector& position_min, const Vector& position_max,
                         const Vector& velocity, const Vector& acceleration, const Vector& jerk,
                         const Matrix& coupling, const Vector& lower, const Vector& upper) {
@@ -100,16 +91,8 @@ std::pair<Array, Array> tool_rates(const RobotHandle& self, const Array& q, cons
   return {std::move(twist), std::move(rate)};
 }
 
-void require_kinematics(const RobotHandle& self) {
-  if (self.robot->has_kinematics()) return;
-  throw MotionError(ErrorCode::kUncontrolled,
-                    "The robot \"" + self.robot->name() +
-                        "\" has joints but no kinematics, so it has no tool pose.",
-                    {"Load a robot with a description: load_robot(\"puma560\") or a .yaml file."});
-}
-
 const InverseKinematics& inverse_of(const RobotHandle& self) {
-  require_kinematics(self);
+  require_kinematics(*self.robot);
   return self.robot->inverse();
 }
 
@@ -171,7 +154,7 @@ void bind_inverse(py::class_<RobotHandle>& robot) {
               const py::gil_scoped_release release;
               all = inverse.solve_all(target);
             }
-            return rows_of(all, r.robot->joints());
+            return rows_of(all);
           },
           py::arg("pose"))
       .def(
@@ -183,7 +166,7 @@ void bind_inverse(py::class_<RobotHandle>& robot) {
               const py::gil_scoped_release release;
               all = inverse.solve_all(position);
             }
-            return rows_of(all, r.robot->joints());
+            return rows_of(all);
           },
           py::arg("position"))
       .def(
@@ -203,6 +186,24 @@ void bind_inverse(py::class_<RobotHandle>& robot) {
 }
 
 }  // namespace
+
+Array rows_of(const std::vector<JointVector>& vectors) {
+  const auto joints = vectors.empty() ? py::ssize_t{0} : py::ssize_t{vectors.front().size()};
+  Array rows({static_cast<py::ssize_t>(vectors.size()), joints});
+  double* out = rows.mutable_data();
+  for (const JointVector& values : vectors) {
+    for (const double value : values) *out++ = value;
+  }
+  return rows;
+}
+
+void require_kinematics(const RobotModel& robot) {
+  if (robot.has_kinematics()) return;
+  throw MotionError(
+      ErrorCode::kUncontrolled,
+      "The robot \"" + robot.name() + "\" has joints but no kinematics, so it has no tool pose.",
+      {"Load a robot with a description: load_robot(\"puma560\") or a .yaml file."});
+}
 
 void bind_robot(py::module_& m) {
   bind_limits(m);
@@ -241,42 +242,42 @@ void bind_robot(py::module_& m) {
       .def(
           "fk",
           [](const RobotHandle& r, const Vector& q) {
-            require_kinematics(r);
+            require_kinematics(*r.robot);
             return Eigen::Matrix4d(r.robot->fk(joints_from(q, "q", r.robot->joints())).matrix());
           },
           py::arg("q"))
       .def(
           "fk_batch",
           [](const RobotHandle& r, const Array& q) {
-            require_kinematics(r);
+            require_kinematics(*r.robot);
             return fk_batch(r, q);
           },
           py::arg("q"))
       .def(
           "tool_rates",
           [](const RobotHandle& r, const Array& q, const Array& qd, const Array& qdd) {
-            require_kinematics(r);
+            require_kinematics(*r.robot);
             return tool_rates(r, q, qd, qdd);
           },
           py::arg("q"), py::arg("qd"), py::arg("qdd"))
       .def(
           "jacobian",
           [](const RobotHandle& r, const Vector& q) {
-            require_kinematics(r);
+            require_kinematics(*r.robot);
             return Matrix(r.robot->jacobian(joints_from(q, "q", r.robot->joints())));
           },
           py::arg("q"))
       .def(
           "manipulability",
           [](const RobotHandle& r, const Vector& q) {
-            require_kinematics(r);
+            require_kinematics(*r.robot);
             return r.robot->manipulability(joints_from(q, "q", r.robot->joints()));
           },
           py::arg("q"))
       .def(
           "singularity",
           [](const RobotHandle& r, const Vector& q) {
-            require_kinematics(r);
+            require_kinematics(*r.robot);
             return r.robot->singularity(joints_from(q, "q", r.robot->joints()));
           },
           py::arg("q"));

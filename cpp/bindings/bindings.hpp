@@ -55,9 +55,15 @@ struct MotionHandle {
 /// A 4x4 pose from Python, projected on a rotation where it is within rounding of one.
 [[nodiscard]] Pose pose_from(const Eigen::Matrix4d& matrix);
 
+/// Joint vectors as the rows of one array, (k, n).
+[[nodiscard]] Array rows_of(const std::vector<JointVector>& vectors);
+/// @throws MotionError(kUncontrolled) for a robot without kinematics
+void require_kinematics(const RobotModel& robot);
+
 void bind_error(py::module_& m);
 void bind_core(py::module_& m);
 void bind_robot(py::module_& m);
+void bind_path(py::module_& m);
 void bind_program(py::module_& m);
 void bind_planning(py::module_& m);
 void bind_realtime(py::module_& m);

@@ -17,8 +17,18 @@ SI units and radians everywhere; poses are ``pose_base_tool``, (4, 4). Every err
 
 from . import errors, profile
 from ._arm import Arm, connect
-from ._core import Certificate, Corner, Extremum, JointLimits, Problem, Singularity, __version__
+from ._core import (
+    Certificate,
+    Corner,
+    Extremum,
+    JointLimits,
+    Knots,
+    Problem,
+    Singularity,
+    __version__,
+)
 from ._job import Job, RunReport
+from ._knots import insert_knots
 from ._motion import Motion
 from ._points import PointList
 from ._program import Program
@@ -38,6 +48,7 @@ __all__ = [
     "Extremum",
     "Job",
     "JointLimits",
+    "Knots",
     "Motion",
     "MotionError",
     "PointList",
@@ -55,6 +66,7 @@ __all__ = [
     "deg",
     "deviation",
     "errors",
+    "insert_knots",
     "joint_deviation",
     "joint_robot",
     "load_robot",

@@ -79,9 +79,7 @@ class Arm:
         """Wait for the run under way, or on an exception bring it to rest; then disconnect."""
         try:
             for job in self._jobs:
-                if kind is not None or job.state in ("pausing", "paused"):
-                    job.stop()
-                job.wait()
+                job.finish(stop=kind is not None)
         finally:
             self.close()
 

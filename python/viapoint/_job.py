@@ -75,6 +75,7 @@ class Job:
     def __init__(self, execution: Execution, motion: Motion, period: float = CYCLE) -> None:
         self._execution = execution
         self._period = period
+        self._seen_to_end = False
         self.motion = motion
 
     def __repr__(self) -> str:
@@ -141,6 +142,7 @@ class Job:
             while True:
                 left = _SLICE if deadline is None else deadline - time.monotonic()
                 if self._execution.wait(max(0.0, min(left, _SLICE))):
+                    self._seen_to_end = True
                     session.waiting(self)
                     session.ended(self)
                     return True
@@ -173,6 +175,14 @@ class Job:
         """Cycles, overruns, latencies and computing times so far."""
         core = self._execution.report()
         return RunReport(**{name: getattr(core, name) for name in RunReport.__dataclass_fields__})
+
+    def finish(self, stop: bool) -> None:
+        """See the job to its end, unless that was done; stopped first, if asked or if it pauses."""
+        if self._seen_to_end:
+            return
+        if stop or self.state in ("pausing", "paused"):
+            self.stop()
+        self.wait()
 
     def _come_to_rest(self) -> None:
         """Stop and wait; a fault meanwhile is the drive's, which is then at rest, too."""

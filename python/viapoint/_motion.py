@@ -56,6 +56,11 @@ class Motion:
         return self._core.pieces
 
     @property
+    def knots(self) -> int:
+        """Number of points that the path's polynomials join, both ends included."""
+        return self._core.path_pieces + 1
+
+    @property
     def certificate(self) -> _core.Certificate:
         """Proven bounds: worst velocity, acceleration and jerk a joint, path deviation, …."""
         return self._core.certificate

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
@@ -26,18 +25,13 @@ def file_stem(script: Path, motion: Motion, taken: set[str]) -> str:
     return stem
 
 
-def run_table(job: Job) -> Table:
-    """Figures of one run."""
+def run_tables(job: Job) -> list[Table]:
+    """Figures of one run: of the run as a whole, and joint by joint."""
     report = job.report
     certificate = job.motion.certificate
-    table = Table(title=f"{job.motion.program.name}: {job.state}", title_justify="left")
-    table.add_column("measured")
-    table.add_column("value", justify="right")
+    table = _headed(f"{job.motion.program.name}: {job.state}")
     table.add_row("duration, planned", f"{job.duration:.4f} s")
     table.add_row("wall time, first to last cycle", f"{report.wall_time:.4f} s")
-    for name, shares in _shares(job.motion):
-        cells = "  ".join(f"{100.0 * share:5.1f}" for share in shares)
-        table.add_row(f"worst {name}, % of the limit, joint 1…{len(shares)}", cells)
     table.add_row("path deviation, proven", f"{1e3 * certificate.path_deviation:.4f} mm")
     table.add_row("corner cut, proven", f"{1e3 * certificate.zone_deviation:.2f} mm")
     table.add_row("cycles / overruns", f"{report.cycles} / {report.overruns}")
@@ -50,19 +44,15 @@ def run_table(job: Job) -> Table:
             "computing a cycle p50 / p99 / max",
             _microseconds(report.compute_p50, report.compute_p99, report.compute_max),
         )
-    return table
+    return [table, _share_table(job.motion)]
 
 
-def motion_table(motion: Motion) -> Table:
+def motion_tables(motion: Motion) -> list[Table]:
     """Figures of a motion that was planned and not run."""
-    table = Table(title=f"{motion.program.name}: planned", title_justify="left")
-    table.add_column("proven")
-    table.add_column("value", justify="right")
+    table = _headed(f"{motion.program.name}: planned")
     table.add_row("duration", f"{motion.duration:.4f} s")
-    for name, shares in _shares(motion):
-        cells = "  ".join(f"{100.0 * share:5.1f}" for share in shares)
-        table.add_row(f"worst {name}, % of the limit, joint 1…{len(shares)}", cells)
-    return table
+    table.add_row("path deviation, proven", f"{1e3 * motion.certificate.path_deviation:.4f} mm")
+    return [table, _share_table(motion)]
 
 
 def write_run(job: Job, folder: Path, stem: str) -> list[Path]:
@@ -90,13 +80,27 @@ def write_pictures(motion: Motion, folder: Path, stem: str) -> list[Path]:
     return files
 
 
-def _shares(motion: Motion) -> Iterable[tuple[str, np.ndarray]]:
+def _headed(title: str) -> Table:
+    table = Table(title=title, title_justify="left", title_style="bold", show_header=False)
+    table.add_column()
+    table.add_column(justify="right")
+    return table
+
+
+def _share_table(motion: Motion) -> Table:
+    """Worst of each joint as a share of its limit, proven."""
     certificate = motion.certificate
-    return (
+    table = Table()
+    table.add_column("worst, % of limit")
+    for joint in range(motion.robot.joints):
+        table.add_column(f"j{joint + 1}", justify="right")
+    for name, shares in (
         ("velocity", certificate.velocity_share),
         ("acceleration", certificate.acceleration_share),
         ("jerk", certificate.jerk_share),
-    )
+    ):
+        table.add_row(name, *(f"{100.0 * share:.1f}" for share in shares))
+    return table
 
 
 def _microseconds(*seconds: float) -> str:

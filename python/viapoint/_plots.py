@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
+import numpy.typing as npt
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
@@ -126,8 +127,7 @@ def draw_path(samples: Samples, motion: Motion) -> Figure:
     points = samples.pose[:, :3, 3]
     span = float(max(np.ptp(points, axis=0).max(), 1e-3))
     ax.plot(*points.T, color=LINE, lw=2.2, label="path of the tool")
-    along = np.linspace(0.0, samples.t[-1], 29)
-    arrows = samples.pose[np.clip(np.searchsorted(samples.t, along), 0, len(samples) - 1)]
+    arrows = samples.pose[_evenly_along(points, 31)]
     ax.quiver(
         *arrows[:, :3, 3].T,
         *arrows[:, :3, 2].T,
@@ -216,6 +216,13 @@ def _target_points(motion: Motion) -> Vector:
         else:
             points.append(value[:3, 3] if kind == "pose" else value.reshape(-1))
     return np.array(points)
+
+
+def _evenly_along(points: Vector, count: int) -> npt.NDArray[np.intp]:
+    """Return indices of samples that lie evenly along the path, not in time."""
+    travelled = np.concatenate([[0.0], np.linalg.norm(np.diff(points, axis=0), axis=1).cumsum()])
+    wanted = np.linspace(0.0, travelled[-1], count)
+    return np.clip(np.searchsorted(travelled, wanted), 0, len(points) - 1)
 
 
 def _cube_around(points: Vector) -> tuple[Vector, Vector]:

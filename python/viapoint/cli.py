@@ -17,7 +17,7 @@ from rich.table import Table
 from . import _core, _session
 from ._job import Job
 from ._motion import Motion
-from ._outcome import file_stem, motion_table, run_table, write_pictures, write_run
+from ._outcome import file_stem, motion_tables, run_tables, write_pictures, write_run
 from ._program import Program
 from ._robot import load_robot
 from .errors import FileError, MotionError
@@ -115,7 +115,7 @@ def run(script: Script, out: Folder = Path("out")) -> None:
         recorder.close()
         taken: set[str] = set()
         for job in recorder.runs:
-            console.print(run_table(job))
+            console.print(*run_tables(job))
             _say_files(write_run(job, out, file_stem(script, job.motion, taken)))
     if not recorder.runs:
         console.print("The script ran nothing: no [bold]arm.run(program)[/bold] was reached.")
@@ -149,7 +149,7 @@ def plot(script: Script, out: Folder = Path("out")) -> None:
         _execute(script, recorder)
         taken: set[str] = set()
         for motion in recorder.chosen:
-            console.print(motion_table(motion))
+            console.print(*motion_tables(motion))
             _say_files(write_pictures(motion, out, file_stem(script, motion, taken)))
 
 

@@ -20,6 +20,7 @@ __all__: list[str] = [
     "Extremum",
     "Job",
     "JointLimits",
+    "Knots",
     "Log",
     "MAX_JOINTS",
     "MotionProgram",
@@ -37,6 +38,7 @@ __all__: list[str] = [
     "check",
     "checked_pose",
     "error_codes",
+    "insert_knots",
     "joint_robot",
     "load_program",
     "load_robot",
@@ -295,6 +297,27 @@ class RobotModel:
     def sources(self) -> list[str]: ...
     @property
     def title(self) -> str: ...
+
+class Knots:
+    """
+    Knots along a straight tool line, with a proven bound.
+    """
+    def __len__(self) -> int: ...
+    @property
+    def angle_bound(self) -> float:
+        """
+        The tool turns at most so far from the line's orientation [rad].
+        """
+    @property
+    def position_bound(self) -> float:
+        """
+        The tool strays at most so far from the line [m].
+        """
+    @property
+    def q(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (k, n) [rad or m]
+        """
 
 class Target:
     """
@@ -584,6 +607,8 @@ class PlannedMotion:
     @property
     def joints(self) -> int: ...
     @property
+    def path_pieces(self) -> int: ...
+    @property
     def pieces(self) -> int: ...
     @property
     def problems(self) -> list[Problem]: ...
@@ -717,6 +742,16 @@ def error_codes() -> list[str]:
     Every error code's name, in the order of the C++ enum.
     """
 
+def insert_knots(
+    robot: RobotModel,
+    pose0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[4, 4]"],
+    pose1: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[4, 4]"],
+    *,
+    near: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    method: str,
+    position: typing.SupportsFloat | typing.SupportsIndex,
+    angle: typing.SupportsFloat | typing.SupportsIndex,
+) -> Knots: ...
 def joint_robot(limits: JointLimits) -> RobotModel:
     """
     Joints with limits and no kinematics.
