@@ -23,7 +23,9 @@ constexpr double kMostUnequal = 4.0;
 constexpr double kAim = 0.997;
 /// Slack of the proof, as a share of the distance proven.
 constexpr double kProofShare = 2e-3;
-constexpr int kBisections = 24;
+constexpr int kGuesses = 8;
+/// A first guess this near to the aim is left to the proof.
+constexpr double kGuessShare = 0.998;
 constexpr int kProofs = 40;
 /// A proven use of the zone that is not improved on, and how many proofs go into reaching it.
 constexpr double kFullUse = 0.992;
@@ -115,15 +117,16 @@ class CornerFit {
     const double most_after = legs_.chord(CornerLegs::kAfter, room_after_);
     const double most = std::min(std::max(most_before, most_after),
                                  kMostUnequal * std::min(most_before, most_after));
+    // A first guess by the distance from the corner, which grows about like the cut.
+    const double aim = kAim * zone_.size;
     double chord = most;
-    if (!seems_to_keep_zone(most)) {
-      double low = 0.0;
-      double high = most;
-      for (int i = 0; i < kBisections; ++i) {
-        chord = 0.5 * (low + high);
-        (seems_to_keep_zone(chord) ? low : high) = chord;
-      }
-      chord = low;
+    for (int i = 0; i < kGuesses; ++i) {
+      const CornerShape shape = shape_of(chord);
+      if (!shape.valid(kShortestCut)) break;
+      const double distance = shape.distance_from_corner(zone_space_);
+      const bool close = distance >= kGuessShare * aim || chord >= most;
+      if (distance <= aim * (1.0 + kProofShare) && close) break;
+      chord = std::min(most, chord * aim / distance);
     }
     // The proof has the last word: the cut follows what it finds, between the longest that is
     // proven and the shortest that is not. The deviation grows about like the cut.
@@ -150,7 +153,6 @@ class CornerFit {
         return finish(*best, best_proven, by_room);
       }
       // Regula falsi between the two, towards the share of the zone aimed at.
-      const double aim = kAim * zone_.size;
       chord = std::isfinite(refused_chord)
                   ? proven_chord + (refused_chord - proven_chord) *
                                        std::clamp((aim - best_proven) / (refused - best_proven),
@@ -163,12 +165,6 @@ class CornerFit {
   CornerShape shape_of(double chord) const {
     return {legs_, legs_.cut_of_chord(CornerLegs::kBefore, chord, room_before_),
             legs_.cut_of_chord(CornerLegs::kAfter, chord, room_after_)};
-  }
-
-  bool seems_to_keep_zone(double chord) const {
-    const CornerShape shape = shape_of(chord);
-    return !shape.valid(kShortestCut) ||
-           shape.distance_from_corner(zone_space_) <= kAim * zone_.size;
   }
 
   Corner finish(const CornerShape& shape, double used, bool limited_by_room) const {

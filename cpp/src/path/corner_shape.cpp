@@ -10,6 +10,8 @@ namespace {
 /// h‖q'‖ over the cut: what puts the inner control points on the corner.
 constexpr double kStretch = 2.5;
 constexpr int kCutBisections = 50;
+/// How closely a cut meets the chord asked for, as a share of it; never above.
+constexpr double kChordSlack = 1e-12;
 constexpr int kCutSamples = 64;
 constexpr int kBlendSamples = 16;
 /// A pairing that bounds the deviation this closely (times the least possible) needs no search.
@@ -71,12 +73,24 @@ double CornerLegs::chord(Side side, double cut) const {
 }
 
 double CornerLegs::cut_of_chord(Side side, double wanted, double room) const {
-  if (chord(side, room) <= wanted) return room;
-  double low = 0.0;
   double high = room;
-  for (int i = 0; i < kCutBisections; ++i) {
-    const double middle = 0.5 * (low + high);
-    (chord(side, middle) <= wanted ? low : high) = middle;
+  double above = chord(side, room) - wanted;
+  if (above <= 0.0) return room;
+  // Regula falsi (Illinois; Dowell & Jarratt 1971): the chord is nearly linear in the cut.
+  double low = 0.0;
+  double below = -wanted;
+  for (int i = 0; i < kCutBisections && -below > kChordSlack * wanted; ++i) {
+    const double cut = low - below * (high - low) / (above - below);
+    const double excess = chord(side, cut) - wanted;
+    if (excess <= 0.0) {
+      low = cut;
+      below = excess;
+      above *= 0.5;
+    } else {
+      high = cut;
+      above = excess;
+      below *= 0.5;
+    }
   }
   return low;
 }
@@ -181,11 +195,14 @@ PathMotion CornerShape::cut_part(CornerLegs::Side side) const {
 double CornerShape::bound_radius(const MotionSpace& space, double resolution,
                                  double give_up) const {
   const RestMotion corner(legs_.corner());
+  const double reached =
+      std::max(space.distance(legs_.at_cut(CornerLegs::kBefore, cut_before_).q, legs_.corner()),
+               space.distance(legs_.at_cut(CornerLegs::kAfter, cut_after_).q, legs_.corner()));
   double worst = 0.0;
   const auto take = [&](const JointMotion& motion) {
     if (worst > give_up) return;
-    worst =
-        std::max(worst, space.bound_distance(motion, corner, 0.0, 1.0, resolution, 0.0, give_up));
+    worst = std::max(
+        worst, space.bound_distance(motion, corner, 0.0, 1.0, resolution, 0.0, reached, give_up));
   };
   take(PieceMotion(blend_));
   take(cut_part(CornerLegs::kBefore));
@@ -195,7 +212,6 @@ double CornerShape::bound_radius(const MotionSpace& space, double resolution,
 
 double CornerShape::bound_deviation_from_legs(const MotionSpace& space, double resolution,
                                               double share) const {
-  constexpr double kForever = std::numeric_limits<double>::infinity();
   const double u_star = nearest_to_corner(space);
   const double least = space.distance(blend_.at(u_star * blend_.length).q, legs_.corner());
   const PieceMotion blend(blend_);
@@ -203,20 +219,20 @@ double CornerShape::bound_deviation_from_legs(const MotionSpace& space, double r
   // is far above the least that is possible is left to the dearer search.
   const double worth = kPairingSlack * least + resolution;
   const PathMotion before(legs_.path(CornerLegs::kBefore), s_before(u_star));
-  double paired = space.bound_distance(blend, before, 0.0, u_star, resolution, share, worth);
+  double paired = space.bound_distance(blend, before, 0.0, u_star, resolution, share, least, worth);
   if (paired <= worth) {
     const PathMotion after(legs_.path(CornerLegs::kAfter), s_after(u_star));
-    paired =
-        std::max(paired, space.bound_distance(blend, after, u_star, 1.0, resolution, share, worth));
+    paired = std::max(
+        paired, space.bound_distance(blend, after, u_star, 1.0, resolution, share, least, worth));
     if (paired <= worth) return paired;
   }
   const PathMotion before_part = cut_part(CornerLegs::kBefore);
   const PathMotion after_part = cut_part(CornerLegs::kAfter);
   const std::array<const JointMotion*, 2> legs = {&before_part, &after_part};
   const std::array<const JointMotion*, 1> only_blend = {&blend};
-  return std::max({space.bound_directed(blend, legs, resolution, share, kForever),
-                   space.bound_directed(before_part, only_blend, resolution, share, kForever),
-                   space.bound_directed(after_part, only_blend, resolution, share, kForever)});
+  return std::max({space.bound_directed(blend, legs, resolution, share, least),
+                   space.bound_directed(before_part, only_blend, resolution, share, least),
+                   space.bound_directed(after_part, only_blend, resolution, share, least)});
 }
 
 double CornerShape::distance_from_corner(const MotionSpace& space) const {

@@ -11,7 +11,6 @@ namespace {
 constexpr int kDeepest = 40;
 /// The search for nearest points is dearer; past this only rounding at the ends is left.
 constexpr int kDeepestSearch = 24;
-constexpr int kNearestSamples = 16;
 constexpr int kNearestSteps = 6;
 
 struct Interval {
@@ -34,6 +33,8 @@ JointPiece over_unit_length(JointPiece piece) {
 
 PieceMotion::PieceMotion(const JointPiece& piece) : piece_(over_unit_length(piece)) {}
 
+JointVector PieceMotion::at(double u) const { return piece_.at(u).q; }
+
 LocalMotion PieceMotion::over(double middle, double half) const {
   LocalMotion local;
   local.at = piece_.at(middle);
@@ -46,6 +47,8 @@ PathMotion::PathMotion(const JointPath& path, const Eigen::Matrix<double, 6, 1>&
   s_of_u_.coefficients = s_of_u;
   s_of_u_.length = 1.0;
 }
+
+JointVector PathMotion::at(double u) const { return path_.at(s_of_u_.at(u).q[0]).q; }
 
 LocalMotion PathMotion::over(double middle, double half) const {
   const PathPoint s = s_of_u_.at(middle);
@@ -95,6 +98,8 @@ RestMotion::RestMotion(const JointVector& q) {
   local_ = {{q, zero, zero, zero}, {zero, zero, zero}};
 }
 
+JointVector RestMotion::at(double /*u*/) const { return local_.at.q; }
+
 LocalMotion RestMotion::over(double /*middle*/, double /*half*/) const { return local_; }
 
 MotionSpace::MotionSpace(const ForwardKinematics& arm, const JointVector& travel)
@@ -116,9 +121,8 @@ MotionSpace::Expansion MotionSpace::expand(const LocalMotion& local) const {
 }
 
 MotionSpace::Vector MotionSpace::point(const JointMotion& motion, double u) const {
-  const JointVector q = motion.over(u, 0.0).at.q;
-  if (arm_ == nullptr) return q;
-  return arm_->pose(q).translation();
+  if (arm_ == nullptr) return motion.at(u);
+  return arm_->pose(motion.at(u)).translation();
 }
 
 double MotionSpace::bound_difference(const Expansion& a, const Expansion& b, double half) {
@@ -131,8 +135,9 @@ double MotionSpace::bound_difference(const Expansion& a, const Expansion& b, dou
 }
 
 double MotionSpace::bound_distance(const JointMotion& a, const JointMotion& b, double u0, double u1,
-                                   double resolution, double share, double give_up) const {
-  double seen = 0.0;
+                                   double resolution, double share, double reached,
+                                   double give_up) const {
+  double seen = reached;
   double proven = 0.0;
   std::vector<Interval> open = {{0.5 * (u0 + u1), 0.5 * (u1 - u0), 0}};
   while (!open.empty()) {
@@ -152,22 +157,21 @@ double MotionSpace::bound_distance(const JointMotion& a, const JointMotion& b, d
   return proven;
 }
 
-MotionSpace::Nearest MotionSpace::nearest(const Vector& wanted, const JointMotion& target) const {
+MotionSpace::Nearest MotionSpace::nearest(const Vector& wanted, const Target& target) const {
   Nearest best;
-  best.target = &target;
-  const auto distance_at = [&](double u) { return (point(target, u) - wanted).norm(); };
-  for (int k = 0; k <= kNearestSamples; ++k) {
-    const double u = static_cast<double>(k) / kNearestSamples;
-    const double distance = distance_at(u);
+  best.target = target.motion;
+  const auto distance_at = [&](double u) { return (point(*target.motion, u) - wanted).norm(); };
+  for (size_t k = 0; k <= kTargetSamples; ++k) {
+    const double distance = (target.points[k] - wanted).norm();
     if (distance < best.distance) {
       best.distance = distance;
-      best.u = u;
+      best.u = static_cast<double>(k) / kTargetSamples;
     }
   }
   // Newton on (b − wanted)·b' = 0 where that is a minimum (the curvature of the square is bounded
   // below by ‖b'‖² / 4), shorter where it does not come nearer.
   for (int step = 0; step < kNearestSteps; ++step) {
-    const Expansion at = expand(target.over(best.u, 0.0));
+    const Expansion at = expand(target.motion->over(best.u, 0.0));
     const Vector gap = at.value - wanted;
     const double square = at.first.squaredNorm();
     const double bend = std::max(square + gap.dot(at.second), 0.25 * square);
@@ -189,8 +193,17 @@ MotionSpace::Nearest MotionSpace::nearest(const Vector& wanted, const JointMotio
 
 double MotionSpace::bound_directed(const JointMotion& a,
                                    std::span<const JointMotion* const> targets, double resolution,
-                                   double share, double give_up) const {
-  double seen = 0.0;
+                                   double share, double reached) const {
+  std::vector<Target> sampled;
+  for (const JointMotion* motion : targets) {
+    Target target;
+    target.motion = motion;
+    for (size_t k = 0; k <= kTargetSamples; ++k) {
+      target.points[k] = point(*motion, static_cast<double>(k) / kTargetSamples);
+    }
+    sampled.push_back(target);
+  }
+  double seen = reached;
   double proven = 0.0;
   std::vector<Interval> open = {{0.5, 0.5, 0}};
   while (!open.empty()) {
@@ -198,8 +211,8 @@ double MotionSpace::bound_directed(const JointMotion& a,
     open.pop_back();
     const Expansion of_a = expand(a.over(interval.middle, interval.half));
     Nearest near;
-    for (const JointMotion* target : targets) {
-      const Nearest here = nearest(of_a.value, *target);
+    for (const Target& target : sampled) {
+      const Nearest here = nearest(of_a.value, target);
       if (near.target == nullptr || here.distance < near.distance) near = here;
     }
     // db/du of the stretch that follows a, and no farther than the target's ends.
@@ -217,7 +230,6 @@ double MotionSpace::bound_directed(const JointMotion& a,
     const Expansion of_b = expand(stretch);
     // The sampled nearest point may not be the nearest: `seen` only steers how fine to go.
     seen = std::max(seen, (of_a.value - of_b.value).norm());
-    if (!(seen <= give_up)) return seen;
     const double bound = bound_difference(of_a, of_b, interval.half);
     if (bound <= seen * (1.0 + share) + resolution || interval.depth >= kDeepestSearch) {
       proven = std::max(proven, bound);

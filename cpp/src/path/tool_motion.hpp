@@ -3,6 +3,7 @@
 /// the tool or in joint space: what the proof of a corner's zone is made of.
 #pragma once
 
+#include <array>
 #include <limits>
 #include <span>
 
@@ -22,6 +23,7 @@ struct LocalMotion {
 class JointMotion {
  public:
   virtual ~JointMotion() = default;
+  [[nodiscard]] virtual JointVector at(double u) const = 0;
   /// Over [middle - half, middle + half].
   [[nodiscard]] virtual LocalMotion over(double middle, double half) const = 0;
 };
@@ -30,6 +32,7 @@ class JointMotion {
 class PieceMotion final : public JointMotion {
  public:
   explicit PieceMotion(const JointPiece& piece);
+  [[nodiscard]] JointVector at(double u) const override;
   [[nodiscard]] LocalMotion over(double middle, double half) const override;
 
  private:
@@ -41,6 +44,7 @@ class PathMotion final : public JointMotion {
  public:
   /// @param s_of_u coefficients of u^0 … u^5; values are clamped to the path
   PathMotion(const JointPath& path, const Eigen::Matrix<double, 6, 1>& s_of_u);
+  [[nodiscard]] JointVector at(double u) const override;
   [[nodiscard]] LocalMotion over(double middle, double half) const override;
 
  private:
@@ -54,6 +58,7 @@ class PathMotion final : public JointMotion {
 class RestMotion final : public JointMotion {
  public:
   explicit RestMotion(const JointVector& q);
+  [[nodiscard]] JointVector at(double u) const override;
   [[nodiscard]] LocalMotion over(double middle, double half) const override;
 
  private:
@@ -74,24 +79,31 @@ class MotionSpace {
   /// A bound of the distance between the motions at equal u, for all u in [u0, u1]: never too
   /// small, and above a distance that is reached by `resolution` + `share` of it at most.
   /// Taylor about the middle of subintervals: e, e' and e'' exact, remainder by chain_bounds.hpp.
+  /// @param reached a distance known to be reached: what is below is not looked at closely
   /// @param give_up the search ends early, with a value above this, once the distance exceeds it
   [[nodiscard]] double bound_distance(const JointMotion& a, const JointMotion& b, double u0,
-                                      double u1, double resolution, double share,
+                                      double u1, double resolution, double share, double reached,
                                       double give_up) const;
 
   /// A bound of the distance of every point of `a` from the nearest point of any of `targets`, all
-  /// over [0, 1]; resolution, share and give_up as above. Each subinterval of `a` is compared with
+  /// over [0, 1]; resolution, share and reached as above. Each subinterval of `a` is compared with
   /// a stretch of a target around the nearest point, walked at the rate that follows it: any choice
   /// bounds the distance from above, a near one bounds it tightly.
   [[nodiscard]] double bound_directed(const JointMotion& a,
                                       std::span<const JointMotion* const> targets,
-                                      double resolution, double share, double give_up) const;
+                                      double resolution, double share, double reached) const;
 
  private:
+  static constexpr size_t kTargetSamples = 16;
   using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxJoints, 1>;
   struct Expansion {
     Vector value, first, second;
     double third = 0.0;  ///< bound of the norm
+  };
+  /// A motion to come near to, and points along it to begin the search at.
+  struct Target {
+    const JointMotion* motion = nullptr;
+    std::array<Vector, kTargetSamples + 1> points;
   };
   /// Where a target comes near to a point.
   struct Nearest {
@@ -102,7 +114,7 @@ class MotionSpace {
 
   [[nodiscard]] Expansion expand(const LocalMotion& local) const;
   [[nodiscard]] Vector point(const JointMotion& motion, double u) const;
-  [[nodiscard]] Nearest nearest(const Vector& wanted, const JointMotion& target) const;
+  [[nodiscard]] Nearest nearest(const Vector& wanted, const Target& target) const;
   /// sup ‖a − b‖ over |t| <= half from the expansions of both about t = 0.
   [[nodiscard]] static double bound_difference(const Expansion& a, const Expansion& b, double half);
 
