@@ -12,6 +12,8 @@ constexpr int kDeepest = 40;
 /// The search for nearest points is dearer; past this only rounding at the ends is left.
 constexpr int kDeepestSearch = 24;
 constexpr int kNearestSteps = 6;
+/// A nearest point that moves less than this (in u) changes no distance that matters.
+constexpr double kNearEnough = 1e-4;
 
 struct Interval {
   double middle, half;
@@ -177,6 +179,7 @@ MotionSpace::Nearest MotionSpace::nearest(const Vector& wanted, const Target& ta
     const double bend = std::max(square + gap.dot(at.second), 0.25 * square);
     if (!(bend > 0.0)) break;
     double move = -gap.dot(at.first) / bend;
+    if (std::abs(move) < kNearEnough) break;
     double u = best.u;
     double distance = best.distance;
     for (int halving = 0; halving < kNearestSteps && !(distance < best.distance); ++halving) {
