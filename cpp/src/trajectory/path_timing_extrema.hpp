@@ -36,26 +36,37 @@ std::array<double, Size> split_off_lower_half(std::array<double, Size>& b) {
   return lower;
 }
 
-/// A bound, at most a relative 1e-12 above what is reached, unless `depth` runs out.
+/// A bound, at most `slack` above what is reached or `floor`, unless `depth` runs out.
 /// @param floor values below this are of no interest
 template <size_t Size>
-double largest_value(std::array<double, Size> b, double floor, int depth = 40) {
+double largest_value(std::array<double, Size> b, double floor, double slack, int depth = 24) {
   const double hull = *std::max_element(b.begin(), b.end());
   const double reached = std::max({b.front(), b.back(), floor});
-  constexpr double kSlack = 1e-12;
-  if (hull <= reached + kSlack * std::abs(hull) || depth == 0) return std::max(hull, floor);
+  if (!(hull > reached + slack) || depth == 0) return std::max(hull, floor);
   const std::array<double, Size> lower = split_off_lower_half(b);
-  const double first = largest_value(lower, reached, depth - 1);
-  return largest_value(b, first, depth - 1);
+  const double first = largest_value(lower, reached, slack, depth - 1);
+  return largest_value(b, first, slack, depth - 1);
 }
 
-/// A bound of |Σ_k c_k x^k| on [0, 1].
+/// A bound of |Σ_k c_k x^k| on [0, 1], a relative 1e-12 of the largest coefficient wide.
 template <size_t Size>
 double largest_magnitude(const std::array<double, Size>& c) {
+  constexpr double kSlack = 1e-12;
   std::array<double, Size> b = to_bernstein(c);
-  const double above = largest_value(b, 0.0);
+  double scale = 0.0;
+  for (double value : b) scale = std::max(scale, std::abs(value));
+  const double above = largest_value(b, 0.0, kSlack * scale);
   for (double& value : b) value = -value;
-  return largest_value(b, above);
+  return largest_value(b, above, kSlack * scale);
+}
+
+/// True if Σ_k b_k is proven to stay at or above `floor` on [0, 1]; b are Bernstein coefficients.
+template <size_t Size>
+bool stays_above(std::array<double, Size> b, double floor, int depth = 12) {
+  if (*std::min_element(b.begin(), b.end()) >= floor) return true;
+  if (!(b.front() >= floor) || !(b.back() >= floor) || depth == 0) return false;
+  const std::array<double, Size> lower = split_off_lower_half(b);
+  return stays_above(lower, floor, depth - 1) && stays_above(b, floor, depth - 1);
 }
 
 }  // namespace viapoint::path_timing

@@ -236,19 +236,15 @@ bool goes_forward(const TimedSpan& span) {
   double low = 0.0, high = 0.0;
   for (double c : span.u) high += c;
   low = span.u[0];
+  if (!(span.duration > 0.0) || !std::isfinite(span.duration)) return false;
   if (!(low >= -kRounding) || !(high <= 1.0 + kRounding) || !(high >= low)) return false;
   const auto& c = span.u;
-  std::array<double, 5> backward = to_bernstein<5>({c[1], 2 * c[2], 3 * c[3], 4 * c[4], 5 * c[5]});
-  for (double& value : backward) value = -value;
-  return largest_value(backward, 0.0) <= kRounding * (high - low + kRounding);
+  return stays_above(to_bernstein<5>({c[1], 2 * c[2], 3 * c[3], 4 * c[4], 5 * c[5]}),
+                     -kRounding * (high - low + kRounding));
 }
 
-void fit_time(const JointPath& path, const JointLimits& limits, std::vector<TimedSpan>& spans,
-              double slack) {
-  // A hair more than the bound, against the rounding of whoever checks the result.
-  constexpr double kMargin = 1e-12;
-  const double stretch = prove(path, limits, spans, slack).stretch() * (1.0 + kMargin);
-  for (TimedSpan& span : spans) span.duration *= stretch;
+void stretch_time(std::vector<TimedSpan>& spans, double factor) {
+  for (TimedSpan& span : spans) span.duration *= factor;
 }
 
 double total_duration(const std::vector<TimedSpan>& spans) {

@@ -57,12 +57,11 @@ struct ShareBounds {
 [[nodiscard]] Shares prove(const JointPath& path, const JointLimits& limits,
                            const std::vector<TimedSpan>& spans, double slack);
 
-/// True if u stays in [0, 1] and never goes back, to rounding.
+/// True if all numbers are finite, u stays in [0, 1] and never goes back, to rounding.
 [[nodiscard]] bool goes_forward(const TimedSpan& span);
 
-/// Stretches (or shrinks) time so that the worst proven share is one, and no more than one.
-void fit_time(const JointPath& path, const JointLimits& limits, std::vector<TimedSpan>& spans,
-              double slack);
+/// Multiplies all durations.
+void stretch_time(std::vector<TimedSpan>& spans, double factor);
 
 [[nodiscard]] double total_duration(const std::vector<TimedSpan>& spans);
 

@@ -44,7 +44,7 @@ void expect_sound(const JointPath& path, const JointLimits& limits,
       ASSERT_GE(u, before - 1e-12);
       before = u;
     }
-    ASSERT_LE(before, 1.0 + 1e-14);
+    ASSERT_LE(before, 1.0 + 1e-12);
   }
   ASSERT_LE(sampled_share(pieces, limits, samples), kShare);
 }

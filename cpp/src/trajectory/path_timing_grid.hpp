@@ -1,0 +1,33 @@
+/// @file
+/// Where along a section the timing gets its nodes, and a first guess of the speed there.
+#pragma once
+
+#include <vector>
+
+#include "viapoint/core/joint_limits.hpp"
+#include "viapoint/path/joint_path.hpp"
+
+namespace viapoint::path_timing {
+
+/// A part of one path piece, s counted from the start of the piece.
+struct Cell {
+  size_t piece = 0;
+  double s0 = 0.0, s1 = 0.0;
+
+  [[nodiscard]] double length() const { return s1 - s0; }
+};
+
+/// Cells from the start of a section to its end, with nodes between neighbours: one node fewer than
+/// cells. In the first and the last cell the section leaves rest and comes to rest.
+struct Grid {
+  std::vector<Cell> cells;
+  std::vector<double> square_rate;  ///< guess of ṡ² at the nodes
+
+  [[nodiscard]] size_t nodes() const { return square_rate.size(); }
+};
+
+/// Cells of about equal change: near rest and near slow places the speed along a motion of constant
+/// jerk scales with a length w = ṡ^{3/2} / √(9/2 s⃛), and cells are a share of that.
+[[nodiscard]] Grid make_grid(const JointPath& path, const JointLimits& limits);
+
+}  // namespace viapoint::path_timing
