@@ -1,5 +1,7 @@
 #include "axis_subjects.hpp"
 
+#include <array>
+
 #include "viapoint/profile/axis_law.hpp"
 #include "viapoint/profile/parabolic_blends.hpp"
 #include "viapoint/profile/quartic_transition.hpp"
@@ -27,8 +29,9 @@ Course course_of(const AxisLaw& law, double first, double last, int continuity) 
   return course;
 }
 
-const std::vector<double> kPoints = {0.3, 1.4, -0.6, 0.9};
-const std::vector<double> kDurations = {1.1, 1.6, 1.3};
+constexpr std::array kPoints = {0.3, 1.4, -0.6, 0.9};
+constexpr std::array kDurations = {1.1, 1.6, 1.3};
+constexpr std::array kAcceleration = {20.0};
 
 }  // namespace
 
@@ -53,8 +56,7 @@ std::vector<Subject<Course>> axis_courses() {
        }},
       {"ParabolicBlends",
        [] {
-         const std::vector<double> acceleration = {20.0};
-         return course_of(blended_lines(kPoints, kDurations, acceleration).law, kPoints.front(),
+         return course_of(blended_lines(kPoints, kDurations, kAcceleration).law, kPoints.front(),
                           kPoints.back(), 1);
        }},
       {"ViaCubics",

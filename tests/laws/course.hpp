@@ -51,6 +51,13 @@ std::vector<T> joined(std::vector<T> first, const std::vector<T>& more) {
   return first;
 }
 
+/// The same subjects, with `suffix` to their names.
+template <typename T>
+std::vector<Subject<T>> named_after(std::vector<Subject<T>> subjects, const std::string& suffix) {
+  for (Subject<T>& subject : subjects) subject.name += suffix;
+  return subjects;
+}
+
 /// The same subjects, seen as something else.
 template <typename To, typename From, typename View>
 std::vector<Subject<To>> seen_as(const std::vector<Subject<From>>& subjects, View view) {

@@ -20,14 +20,13 @@ MotionCase smooth_moves() {
           limits, JointVector::Constant(1, -1.0), JointVector::Constant(1, 0.5)};
 }
 
-/// The quickest timing of a path under the limits of its arm.
+/// The quickest timing of a path.
 template <typename Case>
 MotionCase timed(const Case& from, const JointLimits& limits) {
   return {Trajectory(parameterize(from.path, limits), limits), limits, from.first, from.last};
 }
 
-template <typename Case>
-MotionCase timed_in_joints(const Case& from) {
+MotionCase timed_in_joints(const PathCase& from) {
   return timed(from, viapoint::testing::uniform_limits(from.path.pieces().front().joints(), 100.0,
                                                        2.0, 15.0, 150.0));
 }
@@ -97,9 +96,10 @@ std::vector<Subject<MotionCase>> sound_motions() {
       {"PlannedPtpWithBlend", planned_ptp_with_blend},
       {"PlannedLineWithWristAndWait", planned_line_with_wrist_and_wait},
   };
-  // Every path there is, given its time.
-  own = joined(std::move(own), seen_as<MotionCase>(joint_paths(), timed_in_joints<PathCase>));
-  return joined(std::move(own), seen_as<MotionCase>(tool_paths(), timed_tool_path));
+  // Every path there is, given its time: under the arm's own limits where it has any.
+  own = joined(std::move(own), seen_as<MotionCase>(all_paths(), timed_in_joints));
+  return joined(std::move(own),
+                seen_as<MotionCase>(named_after(tool_paths(), "OwnLimits"), timed_tool_path));
 }
 
 std::vector<Subject<MotionCase>> study_motions() { return {{"FixedTimes", planned_fixed_times}}; }

@@ -3,6 +3,7 @@
 #include <random>
 #include <utility>
 
+#include "corner_subjects.hpp"
 #include "planning/planner_fixture.hpp"
 
 namespace viapoint::laws {
@@ -155,9 +156,14 @@ std::vector<Subject<ToolPathCase>> tool_paths() {
 }
 
 std::vector<Subject<PathCase>> all_paths() {
-  return joined(joint_paths(), seen_as<PathCase>(tool_paths(), [](const ToolPathCase& from) {
-                  return PathCase{from.path, from.first, from.last};
-                }));
+  auto paths = seen_as<PathCase>(tool_paths(), [](const ToolPathCase& from) {
+    return PathCase{from.path, from.first, from.last};
+  });
+  paths = joined(std::move(paths), seen_as<PathCase>(corners(), [](const CornerCase& from) {
+                   return PathCase{from.path, from.before.at(0.0).q,
+                                   from.after.at(from.after.length()).q};
+                 }));
+  return joined(joint_paths(), paths);
 }
 
 std::vector<Subject<Course>> path_courses() { return seen_as<Course>(all_paths(), course_of); }

@@ -32,7 +32,7 @@ struct ToolPathCase {
 [[nodiscard]] std::vector<Subject<PathCase>> joint_paths();
 /// Every path that follows a tool curve.
 [[nodiscard]] std::vector<Subject<ToolPathCase>> tool_paths();
-/// Both lists.
+/// Both lists, and the paths with corners.
 [[nodiscard]] std::vector<Subject<PathCase>> all_paths();
 /// The same as courses.
 [[nodiscard]] std::vector<Subject<Course>> path_courses();

@@ -21,9 +21,10 @@ void measure(Durations& durations, std::span<const TrajectoryPiece> pieces,
   if (checksum >= 0.0) durations.add(seconds / static_cast<double>(pieces.size()));
 }
 
-void print(const char* subject, Durations& durations, std::size_t pieces) {
+void print(const char* subject, Durations& durations, std::size_t pieces, int impossible) {
   JsonLine("certificate", subject)
       .add("motions", durations.count())
+      .add("impossible", impossible)
       .add("pieces", pieces)
       .add("p50_us_per_piece", 1e6 * durations.quantile(0.5))
       .add("p99_us_per_piece", 1e6 * durations.quantile(0.99));
@@ -34,6 +35,7 @@ void run_planned(const char* subject, const RobotPtr& robot, int programs, Make 
   const MotionPlanner planner(robot);
   Durations durations;
   std::size_t pieces = 0;
+  int impossible = 0;
   for (int seed = 0; seed < programs; ++seed) {
     try {
       const Trajectory motion =
@@ -42,9 +44,10 @@ void run_planned(const char* subject, const RobotPtr& robot, int programs, Make 
       pieces += motion.pieces().size();
     } catch (const MotionError&) {
       // A random program that is impossible has no motion to certify.
+      ++impossible;
     }
   }
-  print(subject, durations, pieces);
+  print(subject, durations, pieces, impossible);
 }
 
 /// Quintics in quintics, degree 25 in time: the dearest pieces there can be.
@@ -77,7 +80,7 @@ void bench_certificate(int programs) {
     measure(durations, pieces, robot->limits());
     count += pieces.size();
   }
-  print("degree_25_six_joints", durations, count);
+  print("degree_25_six_joints", durations, count, 0);
 }
 
 }  // namespace viapoint::bench

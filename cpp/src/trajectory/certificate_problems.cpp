@@ -100,7 +100,7 @@ class Collector {
   }
 
   std::vector<Problem> sorted(std::vector<Problem> first) && {
-    std::stable_sort(found_.begin(), found_.end(), [](const Ranked& a, const Ranked& b) {
+    std::ranges::sort(found_, [](const Ranked& a, const Ranked& b) {
       return a.rank != b.rank ? a.rank < b.rank : a.severity > b.severity;
     });
     for (Ranked& ranked : found_) first.push_back(std::move(ranked.problem));

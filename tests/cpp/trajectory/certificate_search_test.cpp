@@ -73,6 +73,7 @@ TEST(CertificateSearch, BoundsManyJointsAndPiecesAsTheyWouldBeAlone) {
     SCOPED_TRACE(seed);
     std::mt19937_64 random(seed);
     std::vector<TrajectoryPiece> pieces;
+    pieces.reserve(10);
     for (int i = 0; i < 10; ++i) pieces.push_back(random_piece(random, 6));
     const JointLimits limits = uniform_limits(6, 1e3, 1.0, 1.0, 1.0);
     const Certificate together = certify(pieces, limits);
@@ -129,10 +130,10 @@ std::vector<TrajectoryPiece> move_with_spike(double height) {
   return pieces;
 }
 
-const JointLimits kMoveLimits = uniform_limits(1, 2.0, 1.9, 5.8, 61.0);
+JointLimits move_limits() { return uniform_limits(1, 2.0, 1.9, 5.8, 61.0); }
 
 TEST(CertificateSearch, LetsTheUntouchedMovePass) {
-  const Certificate certificate = certify(move_with_spike(0.0), kMoveLimits);
+  const Certificate certificate = certify(move_with_spike(0.0), move_limits());
   EXPECT_TRUE(certificate.holds()) << certificate.problems.front().describe();
 }
 
@@ -149,14 +150,15 @@ TEST(CertificateSearch, FindsAViolationPlantedBetweenTwoSamplesAMicrosecondApart
         Case{1e-6,
              {ErrorCode::kJerkLimit, ErrorCode::kAccelerationLimit, ErrorCode::kVelocityLimit}}}) {
     SCOPED_TRACE(height);
-    const Trajectory trajectory(move_with_spike(height), kMoveLimits);
+    const JointLimits limits = move_limits();
+    const Trajectory trajectory(move_with_spike(height), limits);
 
     // Sampling, and be it every microsecond, sees nothing.
     for (int i = 0; i <= 1'000'000; ++i) {
       const JointState state = trajectory.at(i * kSampling);
-      ASSERT_LE(std::abs(state.qd[0]), kMoveLimits.velocity[0]);
-      ASSERT_LE(std::abs(state.qdd[0]), kMoveLimits.acceleration[0]);
-      ASSERT_LE(std::abs(state.qddd[0]), kMoveLimits.jerk[0]);
+      ASSERT_LE(std::abs(state.qd[0]), limits.velocity[0]);
+      ASSERT_LE(std::abs(state.qdd[0]), limits.acceleration[0]);
+      ASSERT_LE(std::abs(state.qddd[0]), limits.jerk[0]);
     }
     const Certificate& certificate = trajectory.certificate();
     ASSERT_EQ(certificate.problems.size(), breaks.size());
