@@ -307,7 +307,8 @@ SquareRate BarrierProblem::start() const {
     const double after = (rate.value[k + 1] - rate.value[k]) / cells_[k + 1].length;
     rate.slope[k] = before * after > 0.0 ? 2.0 * before * after / (before + after) : 0.0;
   }
-  make_feasible(rate);
+  constexpr int kRounds = 4;
+  make_feasible(rate, kRounds);
   return rate;
 }
 
@@ -346,9 +347,8 @@ std::vector<Shares> BarrierProblem::shares(const SquareRate& rate) const {
   return shares;
 }
 
-void BarrierProblem::make_feasible(SquareRate& rate) const {
+void BarrierProblem::make_feasible(SquareRate& rate, int rounds) const {
   constexpr double kRoom = 0.95;
-  constexpr int kRounds = 4;
   const size_t n = nodes_.size();
   std::vector<double> scale(n);
   for (int round = 0;; ++round) {
@@ -365,7 +365,7 @@ void BarrierProblem::make_feasible(SquareRate& rate) const {
       worst = std::max(worst, scale[k]);
     }
     if (worst <= 1.0) return;
-    if (round == kRounds) {
+    if (round == rounds) {
       for (size_t k = 0; k < n; ++k) {
         rate.value[k] /= worst * worst;
         rate.slope[k] /= worst * worst;
@@ -399,7 +399,8 @@ void BarrierProblem::scale_limits(const std::vector<Shares>& factors) {
   }
 }
 
-void BarrierProblem::assemble(const SquareRate& rate, double weight, Newton& newton) const {
+void BarrierProblem::assemble(const SquareRate& rate, double weight, double curvature,
+                              Newton& newton) const {
   newton.clear();
   const size_t n = nodes_.size();
   double before = 0.0;  // time in the cell before the node
@@ -418,7 +419,8 @@ void BarrierProblem::assemble(const SquareRate& rate, double weight, Newton& new
         time += f;
         newton.add(k, v, -0.5 * f * inverse, 0.75 * f * inverse * inverse);
       }
-      const double w = weight * time / static_cast<double>(cell.count);
+      const double share = time / static_cast<double>(cell.count);
+      const double w = weight * share, c = curvature * share;
       for (size_t p = 0; p < cell.count; ++p) {
         const Place& place = cell.places[p];
         const double at = dot(place.value, x), slope = dot(place.slope, x);
@@ -444,12 +446,12 @@ void BarrierProblem::assemble(const SquareRate& rate, double weight, Newton& new
           hsk += second * ys * yk;
           hkk += second * yk * yk;
         }
-        newton.add(k, place.value, w * gb, w * hbb);
-        newton.add(k, place.slope, w * gs, w * hss);
-        newton.add(k, place.bend, w * gk, w * hkk);
-        newton.add_mixed(k, place.value, place.slope, w * hbs);
-        newton.add_mixed(k, place.value, place.bend, w * hbk);
-        newton.add_mixed(k, place.slope, place.bend, w * hsk);
+        newton.add(k, place.value, w * gb, c * hbb);
+        newton.add(k, place.slope, w * gs, c * hss);
+        newton.add(k, place.bend, w * gk, c * hkk);
+        newton.add_mixed(k, place.value, place.slope, c * hbs);
+        newton.add_mixed(k, place.value, place.bend, c * hbk);
+        newton.add_mixed(k, place.slope, place.bend, c * hsk);
       }
     }
     double ceiling = nodes_[k].ceiling * std::min(cells_[k].velocity, cell.velocity) *
@@ -469,10 +471,10 @@ void BarrierProblem::assemble(const SquareRate& rate, double weight, Newton& new
     }
     if (k + 1 == n) ramp(h, end_ceiling_, cell);
     newton.objective += time;
-    const double w = 0.5 * weight * (before + time);
+    const double w = 0.5 * weight * (before + time), c = 0.5 * curvature * (before + time);
     const double above = 1.0 / (ceiling - b);
     newton.gradient_b[k] += w * above;
-    newton.diagonal[k].bb += w * above * above;
+    newton.diagonal[k].bb += c * above * above;
     const double room = std::min(cells_[k].acceleration, cell.acceleration);
     for (size_t r = nodes_[k].acceleration.begin; r < nodes_[k].acceleration.end; ++r) {
       const AccelerationRow& row = acceleration_rows_[r];
@@ -480,7 +482,7 @@ void BarrierProblem::assemble(const SquareRate& rate, double weight, Newton& new
       const double over = 1.0 / (room - g), under = 1.0 / (room + g);
       newton.acceleration_above[r] = over;
       newton.acceleration_below[r] = under;
-      const double first = w * (over - under), second = w * (over * over + under * under);
+      const double first = w * (over - under), second = c * (over * over + under * under);
       newton.gradient_b[k] += first * row.b;
       newton.gradient_s[k] += first * row.slope;
       newton.diagonal[k].bb += second * row.b * row.b;
@@ -537,17 +539,19 @@ double BarrierProblem::largest_step(const SquareRate& rate, const SquareRate& st
   return worst > 0.0 ? 1.0 / worst : kInfinite;
 }
 
-int BarrierProblem::solve(SquareRate& rate, double weight) const {
-  constexpr double kLastWeight = 1e-3;
+bool BarrierProblem::solve(SquareRate& rate, double weight, double last_weight) const {
   constexpr double kReduction = 0.2;
-  constexpr int kMostSteps = 100;
+  constexpr int kMostSteps = 100, kMostAtOneWeight = 5;
+  constexpr double kStillFar = 10.0;
   constexpr double kBoundary = 0.95;
   const size_t n = nodes_.size();
   Newton newton(n, acceleration_rows_.size(), jerk_rows_.size());
   SquareRate step{std::vector<double>(n), std::vector<double>(n)};
-  for (int k = 1; k <= kMostSteps; ++k) {
-    assemble(rate, weight, newton);
-    if (!newton.solve(step)) return 0;
+  double curvature = weight;
+  int at_this_weight = 0;
+  for (int k = 0; k < kMostSteps; ++k) {
+    assemble(rate, weight, curvature, newton);
+    if (!newton.solve(step)) return false;
     step.slope.front() = start_tie() * step.value.front();
     step.slope.back() = end_tie() * step.value.back();
     double decrement = 0.0;
@@ -556,16 +560,26 @@ int BarrierProblem::solve(SquareRate& rate, double weight) const {
     }
     const double most = largest_step(rate, step, newton);
     const double length = std::min(1.0, kBoundary * most);
-    if (!std::isfinite(decrement) || !(length > 0.0)) return 0;
+    if (!std::isfinite(decrement) || !(length > 0.0)) return false;
     for (size_t i = 0; i < n; ++i) {
       rate.value[i] += length * step.value[i];
       rate.slope[i] += length * step.slope[i];
     }
-    const bool central = decrement <= 1.0 * weight * newton.objective && length > 0.5;
-    if (central && weight <= kLastWeight) return k;
-    if (central) weight = std::max(kLastWeight, weight * kReduction);
+    // One tight place shortens the step of the whole section: wait for it, but not for long.
+    const double distance = decrement / (weight * newton.objective);
+    ++at_this_weight;
+    const bool central = (distance <= 1.0 && length > 0.5) ||
+                         (distance <= kStillFar && at_this_weight >= kMostAtOneWeight);
+    // A slack near its end holds weight / multiplier. Right after a reduction the multiplier is
+    // that of the old weight, and so is the curvature: with it the step leads to the new slack, not
+    // past it (that is the primal-dual direction).
+    curvature = weight;
+    if (!central) continue;
+    if (weight <= last_weight) return true;
+    weight = std::max(last_weight, weight * kReduction);
+    at_this_weight = 0;
   }
-  return kMostSteps;
+  return true;
 }
 
 std::vector<TimedSpan> BarrierProblem::spans(const SquareRate& rate) const {

@@ -30,12 +30,14 @@ class BarrierProblem {
 
   /// A strictly feasible start out of the grid's guess.
   [[nodiscard]] SquareRate start() const;
-  /// Scales `rate` down until it keeps every limit with some room.
-  void make_feasible(SquareRate& rate) const;
+  /// Scales `rate` down until it keeps every limit with some room: where it must be, `rounds`
+  /// times, then all of it.
+  void make_feasible(SquareRate& rate, int rounds) const;
   /// Follows the central path from `rate`, which must be strictly feasible.
-  /// @param weight first weight of the barrier, as a share of time; ends at kLastWeight
-  /// @returns number of Newton steps; 0 if the numbers gave out (rate stays feasible)
-  int solve(SquareRate& rate, double weight) const;
+  /// @param weight, last_weight first and last weight of the barrier, as a share of time: what is
+  ///        left to gain is about the last weight times two (the limits active in a cell)
+  /// @returns false if the numbers gave out
+  [[nodiscard]] bool solve(SquareRate& rate, double weight, double last_weight) const;
 
   /// Motion along the cells, C² in time.
   [[nodiscard]] std::vector<TimedSpan> spans(const SquareRate& rate) const;
@@ -75,7 +77,8 @@ class BarrierProblem {
   void add_jerk_rows(const PathPoint& p, const JointPiece& piece, Rows& rows);
   double ramp_ceiling(const JointPiece& piece, double from, double to, bool leaving) const;
   double largest_step(const SquareRate& rate, const SquareRate& step, const Newton& newton) const;
-  void assemble(const SquareRate& rate, double weight, Newton& newton) const;
+  /// Gradient of the barrier with one weight, curvature with another.
+  void assemble(const SquareRate& rate, double weight, double curvature, Newton& newton) const;
   double start_tie() const { return 4.0 / 3.0 / cells_.front().length; }
   double end_tie() const { return -4.0 / 3.0 / cells_.back().length; }
 

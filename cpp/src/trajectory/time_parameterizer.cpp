@@ -68,17 +68,18 @@ std::vector<Shares> corrections(const std::vector<Shares>& meant, const JointPat
 /// The near-optimal timing, proven; empty if the method does not get there.
 std::vector<TimedSpan> quickest(const JointPath& path, const JointLimits& limits) {
   constexpr int kPasses = 2;
-  constexpr double kFirstWeight = 0.1, kNextWeight = 0.01;
+  constexpr double kFirstWeight = 0.1, kRoughWeight = 0.01, kLastWeight = 1e-3;
   BarrierProblem problem(path, limits, path_timing::make_grid(path, limits));
   SquareRate rate = problem.start();
-  if (problem.solve(rate, kFirstWeight) == 0) return {};
+  if (!problem.solve(rate, kFirstWeight, kRoughWeight)) return {};
   // The optimiser sees limits at a few places of a cell and b as a cubic in s; the motion is a
   // quintic in time and held to its limits everywhere. Where the two differ, the limits given to
   // the optimiser are corrected.
   for (int pass = 0; pass < kPasses; ++pass) {
     problem.scale_limits(corrections(problem.shares(rate), path, limits, problem.spans(rate)));
-    problem.make_feasible(rate);
-    if (problem.solve(rate, kNextWeight) == 0) return {};
+    problem.make_feasible(rate, 0);
+    const double last = pass + 1 == kPasses ? kLastWeight : 0.4 * kRoughWeight;
+    if (!problem.solve(rate, kRoughWeight, last)) return {};
   }
   std::vector<TimedSpan> spans = problem.spans(rate);
   for (const TimedSpan& span : spans) {
