@@ -1,3 +1,5 @@
+#include <time.h>
+
 #include <chrono>
 #include <functional>
 
@@ -11,6 +13,13 @@
 namespace viapoint::bench {
 namespace {
 
+/// Processor time of this thread [s]: other programs on the machine do not count.
+double processor_time() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
 /// What reading the clock twice costs by itself [s].
 double clock_cost() {
   Durations empty;
@@ -23,14 +32,17 @@ double clock_cost() {
 void run(const char* subject, const Trajectory& motion, const JointLimits& limits, int ticks,
          const std::function<void(Interpolator&, int)>& disturb) {
   Interpolator interpolator(limits, std::chrono::milliseconds(2), motion.at(0.0).q);
-  Durations durations;
+  Durations durations, processor;
   durations.reserve(static_cast<size_t>(ticks));
+  processor.reserve(static_cast<size_t>(ticks));
   Setpoint setpoint;
   double checksum = 0.0;
   for (int i = 0; i < ticks; ++i) {
     if (!interpolator.active()) interpolator.begin(motion);
     disturb(interpolator, i);
+    const double before = processor_time();
     durations.add(time_of([&] { (void)interpolator.tick(setpoint); }));
+    processor.add(processor_time() - before);
     checksum += setpoint.q[0];
   }
   JsonLine("tick", subject)
@@ -40,6 +52,9 @@ void run(const char* subject, const Trajectory& motion, const JointLimits& limit
       .add("p99_us", 1e6 * durations.quantile(0.99))
       .add("p99_99_us", 1e6 * durations.quantile(0.9999))
       .add("max_us", 1e6 * durations.quantile(1.0))
+      .add("processor_p50_us", 1e6 * processor.quantile(0.5))
+      .add("processor_p99_us", 1e6 * processor.quantile(0.99))
+      .add("processor_max_us", 1e6 * processor.quantile(1.0))
       .add("clock_us", 1e6 * clock_cost())
       .add("checksum", checksum);
 }
