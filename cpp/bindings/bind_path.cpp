@@ -43,7 +43,8 @@ KnotsHandle certified_knots(const RobotModel& robot, const Pose& from, const Pos
 KnotsHandle taylor_knots(const RobotModel& robot, const Pose& from, const Pose& to,
                          const JointVector& start, double position, double angle) {
   const LineCurve curve(from, to);
-  const JointVector goal = robot.inverse().solve_near(to, start);
+  // Both ends must lie on one branch: the goal is where the line itself arrives.
+  const JointVector goal = certified_knots(robot, from, to, start, position, angle).knots.back();
   TaylorKnots found = taylor_insertion(robot.forward(), curve, start, goal, position, angle);
   const Deviation bound = bound_of_lines(robot, curve, found, position, angle);
   return {std::move(found.knots), bound};

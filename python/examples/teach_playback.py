@@ -23,7 +23,7 @@ with tempfile.TemporaryDirectory() as folder:
     points = vp.PointList(file, robot)
     with vp.connect("sim://puma560", start=home) as arm:
         for name, q in where:
-            arm.run(vp.Program(robot, start=arm.joints, name=f"to {name}").movej(q))
+            arm.run(vp.Program(robot, start=arm.setpoint, name=f"to {name}").movej(q))
             arm.teach(name, points)
     print(f"{file.name} holds {', '.join(points)}")
 
@@ -31,7 +31,7 @@ with tempfile.TemporaryDirectory() as folder:
     points = vp.PointList(file)
     with vp.connect("sim://puma560", start=home) as arm:
         arm.run(points.program(start=home, kind="ptp", zone=30 * mm, name="joint playback"))
-        back = points.program(start=arm.joints, kind="lin", speed=0.25, name="straight playback")
+        back = points.program(start=arm.setpoint, kind="lin", speed=0.25, name="straight playback")
         job = arm.run(back)
         miss = np.abs(arm.joints - points["seam end"]).max()
         print(f"{job.state}; {miss:.1e} rad from the last taught point")

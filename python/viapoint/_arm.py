@@ -132,7 +132,7 @@ class Arm:
                     f"The run was stopped {job.nominal_time:.3f} s along its {job.duration:.3f} s.",
                     move=job.move,
                     time=job.nominal_time,
-                    ways_out=["Plan a new program from where the arm rests: start=arm.joints."],
+                    ways_out=["Plan a new program from where the arm rests: start=arm.setpoint."],
                 )
         return job
 
@@ -149,6 +149,15 @@ class Arm:
     def joints(self) -> Vector:
         """What the drive last measured, (n,) [rad or m]."""
         return self._loop.measured
+
+    @property
+    def setpoint(self) -> Vector:
+        """Where the controller has told the arm to be, (n,) [rad or m].
+
+        A program that goes on from here begins at ``start=arm.setpoint``: what the drive measures
+        differs from it by the following error.
+        """
+        return self._loop.position
 
     @property
     def pose(self) -> Vector:

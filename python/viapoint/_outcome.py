@@ -16,7 +16,7 @@ from ._plots import DRAWINGS, drawings_for, save_figure, save_plot
 def file_stem(script: Path, motion: Motion, taken: set[str]) -> str:
     """Name the files of a motion after script and program, never the same twice."""
     program = re.sub(r"[^\w.-]+", "_", motion.program.name.strip()).strip("_")
-    base = script.stem if program in ("", "program") else f"{script.stem}_{program}"
+    base = script.stem if program in ("", "program", script.stem) else f"{script.stem}_{program}"
     stem, count = base, 1
     while stem in taken:
         count += 1

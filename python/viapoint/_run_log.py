@@ -15,7 +15,7 @@ from ._robot import Robot
 from ._samples import Samples
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class RunLog:
     """The setpoints of a run, one row a cycle.
 
@@ -70,6 +70,10 @@ class RunLog:
     def __len__(self) -> int:
         """Count the cycles."""
         return len(self.cycle)
+
+    def __repr__(self) -> str:
+        """Count cycles and joints."""
+        return f"<RunLog {len(self)} cycles of {self.q.shape[1]} joints>"
 
     @property
     def samples(self) -> Samples:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -12,7 +12,7 @@ from ._arguments import Vector
 from ._robot import Robot
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Samples:
     """States of a motion, one a row.
 
@@ -34,11 +34,15 @@ class Samples:
     qdd: Vector
     qddd: Vector
     move: npt.NDArray[np.int32]
-    robot: Robot = field(repr=False)
+    robot: Robot
 
     def __len__(self) -> int:
         """Count the samples."""
         return len(self.t)
+
+    def __repr__(self) -> str:
+        """Count samples and joints."""
+        return f"<Samples {len(self)} of {self.q.shape[1]} joints, to {self.t[-1]:.3f} s>"
 
     @cached_property
     def pose(self) -> Vector:

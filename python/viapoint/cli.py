@@ -179,14 +179,22 @@ def robots() -> None:
     console.print(table)
 
 
+def _say_version(wanted: bool) -> None:
+    if wanted:
+        console.print(_core.__version__, highlight=False)
+        raise typer.Exit
+
+
 @app.callback()
 def common(
-    version: Annotated[bool, typer.Option("--version", help="Say the version and end")] = False,
+    version: Annotated[
+        bool,
+        typer.Option(
+            "--version", callback=_say_version, is_eager=True, help="Say the version and end."
+        ),
+    ] = False,
 ) -> None:
     """Programs in, proven 2 ms setpoints out."""
-    if version:
-        console.print(_core.__version__)
-        raise typer.Exit
 
 
 def main() -> None:

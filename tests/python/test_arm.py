@@ -1,0 +1,352 @@
+"""The real 2 ms loop on the simulated drive: run, wait, stop, pause, override, Ctrl-C."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import textwrap
+import time
+
+import numpy as np
+import pytest
+
+import viapoint as vp
+from viapoint import errors
+
+
+def wait_for(condition, seconds=5.0):
+    """Wait until the condition holds; fail with a reason instead of for ever."""
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end, "the condition never came true"
+        time.sleep(0.002)
+
+
+def assert_on_path(log, motion, tolerance=2e-3):
+    """Every tenth setpoint is a point of the planned path, wherever it is in time."""
+    path = motion.sample(2e-4).q
+    for q in log.q[::10]:
+        assert np.abs(path - q).max(axis=1).min() < tolerance
+
+
+@pytest.fixture
+def long(puma, abc):
+    """About 1.6 s from A over B to C."""
+    program = vp.Program(puma, start=abc["A"], name="long")
+    return program.movej(abc["B"], zone=vp.joint_deviation(0.05)).movej(abc["C"]).plan()
+
+
+def test_a_run_takes_its_duration_within_one_cycle_and_ends_at_the_goal(short):
+    motion = short.plan()
+    with vp.connect("sim://puma560", start=short.start) as arm:
+        job = arm.run(motion)
+        np.testing.assert_allclose(arm.joints, motion.end, atol=1e-9)
+        np.testing.assert_allclose(arm.pose, arm.robot.fk(motion.end), atol=1e-8)
+    assert job.state == "finished"
+    assert job.ended
+    log, report = job.log, job.report
+    assert report.cycles == len(log)
+    assert (len(log) - 1) * 0.002 == pytest.approx(motion.duration, abs=0.002 + 1e-9)
+    np.testing.assert_allclose(log.q[-1], motion.end, atol=1e-9)
+
+
+def test_the_stamps_are_the_monotonic_clocks(short):
+    before = time.clock_gettime_ns(time.CLOCK_MONOTONIC)
+    with vp.connect("sim://puma560", start=short.start) as arm:
+        job = arm.run(short)
+    after = time.clock_gettime_ns(time.CLOCK_MONOTONIC)
+    stamps = job.log.stamp
+    assert before <= stamps[0] < stamps[-1] <= after
+    # The mean of the steps; single ones vary with the machine's load.
+    assert np.diff(stamps).mean() == pytest.approx(2e6, rel=0.02)
+
+
+def test_the_executed_setpoints_are_the_simulated_ones_to_the_last_bit(short):
+    with vp.connect("sim://puma560", start=short.start) as arm:
+        log = arm.run(short).log
+    simulated = vp.simulate(short)
+    for name in ("q", "qd", "qdd", "qddd"):
+        np.testing.assert_array_equal(getattr(log, name), getattr(simulated, name))
+
+
+def test_one_program_after_the_other_from_where_the_arm_stands(puma, abc):
+    with vp.connect("sim://puma560", start=abc["A"]) as arm:
+        arm.run(vp.Program(puma, start=arm.setpoint).movej(abc["A"] + 0.1))
+        job = arm.run(vp.Program(puma, start=arm.setpoint).movej(abc["A"]))
+        assert job.log.cycle[0] == 0
+        np.testing.assert_allclose(arm.joints, abc["A"], atol=1e-9)
+
+
+def test_an_arm_that_is_elsewhere_refuses_with_the_way_out(short):
+    with vp.connect("sim://puma560") as arm:
+        with pytest.raises(errors.NotAtStartError) as caught:
+            arm.run(short)
+        np.testing.assert_array_equal(arm.joints, np.zeros(6))
+    assert caught.value.ways_out
+
+
+def test_the_start_may_stand_in_the_url():
+    with vp.connect("sim://scara?start=0.1,0.2,0.1,-0.3") as arm:
+        np.testing.assert_allclose(arm.joints, [0.1, 0.2, 0.1, -0.3])
+
+
+@pytest.mark.parametrize(
+    ("url", "arguments", "says"),
+    [
+        ("puma560", {}, "sim://"),
+        ("tcp://host:1", {}, "sim://"),
+        ("sim://", {}, "sim://"),
+        ("sim://puma560?begin=0", {}, "start"),
+        ("sim://puma560?start=0,x", {}, "start"),
+        ("sim://puma560?start=0,1", {}, "start"),
+        ("sim://puma560", {"start": [1, 2]}, "start"),
+        ("sim://puma560", {"cycle": 0.0}, "cycle"),
+    ],
+)
+def test_a_bad_connection_is_refused(url, arguments, says):
+    with pytest.raises(errors.BadArgumentError, match=says):
+        vp.connect(url, **arguments)
+
+
+def test_a_connection_to_an_unknown_robot_is_refused():
+    with pytest.raises(errors.BadRobotError, match="puma561"):
+        vp.connect("sim://puma561")
+
+
+def test_a_program_for_other_limits_is_refused(puma, abc):
+    slow = puma.with_limits(velocity=0.5)
+    program = vp.Program(slow, start=abc["A"]).movej(abc["A"] + 0.05)
+    with (
+        vp.connect("sim://puma560", start=abc["A"]) as arm,
+        pytest.raises(errors.BadArgumentError, match="robot"),
+    ):
+        arm.run(program)
+    with vp.connect("sim://puma560", start=abc["A"], robot=slow) as arm:
+        assert arm.run(program).state == "finished"
+
+
+def test_what_is_no_program_is_refused():
+    with (
+        vp.connect("sim://puma560") as arm,
+        pytest.raises(errors.BadArgumentError, match="program"),
+    ):
+        arm.run("p.json")
+
+
+def test_a_second_run_meanwhile_is_refused(long):
+    with vp.connect("sim://puma560", start=long.start) as arm:
+        job = arm.run(long, wait=False)
+        with pytest.raises(errors.BusyError):
+            arm.run(long)
+        assert arm.busy
+        job.stop()
+        assert job.wait(5.0)
+        assert not arm.busy
+
+
+def test_wait_returns_false_at_its_timeout(long):
+    with vp.connect("sim://puma560", start=long.start) as arm:
+        job = arm.run(long, wait=False)
+        begin = time.monotonic()
+        assert job.wait(0.1) is False
+        assert 0.09 < time.monotonic() - begin < 1.0
+        assert job.state == "running"
+        assert 0.0 < job.nominal_time < job.duration
+        assert job.wait() is True
+
+
+def test_stop_comes_to_rest_on_the_path(long):
+    with vp.connect("sim://puma560", start=long.start) as arm:
+        job = arm.run(long, wait=False)
+        wait_for(lambda: job.nominal_time > 0.4)
+        job.stop()
+        assert job.wait(5.0)
+        assert job.state == "stopped"
+        log = job.log
+        np.testing.assert_array_equal(arm.setpoint, log.q[-1])
+        wait_for(lambda: np.array_equal(arm.joints, log.q[-1]))  # measured a cycle later
+    np.testing.assert_allclose(log.qd[-1], 0.0, atol=1e-9)
+    assert np.abs(log.q[-1] - long.end).max() > 0.05
+    assert_on_path(log, long)
+    limits = long.robot.limits
+    assert (np.abs(log.qdd) <= limits.acceleration * (1 + 1e-6)).all()
+    assert (np.abs(log.qddd) <= limits.jerk * (1 + 1e-6)).all()
+
+
+def test_run_raises_when_another_thread_stops_it(long):
+    import threading
+
+    with vp.connect("sim://puma560", start=long.start) as arm:
+
+        def stop():
+            wait_for(lambda: arm.busy)
+            time.sleep(0.2)
+            arm._jobs[-1].stop()
+
+        thread = threading.Thread(target=stop)
+        thread.start()
+        with pytest.raises(errors.StoppedError) as caught:
+            arm.run(long)
+        thread.join()
+    assert 0 < caught.value.time < long.duration
+
+
+def test_pause_rests_and_resume_finishes_at_the_goal(long):
+    with vp.connect("sim://puma560", start=long.start) as arm:
+        job = arm.run(long, wait=False)
+        wait_for(lambda: job.nominal_time > 0.3)
+        job.pause()
+        wait_for(lambda: job.state == "paused")
+        rests = arm.setpoint
+        time.sleep(0.1)
+        np.testing.assert_array_equal(arm.setpoint, rests)
+        np.testing.assert_array_equal(arm.joints, rests)
+        job.resume()
+        assert job.wait(10.0)
+        assert job.state == "finished"
+        np.testing.assert_allclose(arm.joints, long.end, atol=1e-9)
+    assert_on_path(job.log, long)
+    assert "paused" in {vp.RunLog.STATES[s] for s in job.log.state}
+
+
+def test_leaving_the_block_while_paused_stops(long):
+    with vp.connect("sim://puma560", start=long.start) as arm:
+        job = arm.run(long, wait=False)
+        job.pause()
+        wait_for(lambda: job.state == "paused")
+    assert job.state == "stopped"
+
+
+def test_leaving_the_block_waits_for_the_run(short):
+    with vp.connect("sim://puma560", start=short.start) as arm:
+        job = arm.run(short, wait=False)
+    assert job.state == "finished"
+
+
+def test_override_slows_on_the_path(long):
+    with vp.connect("sim://puma560", start=long.start) as arm:
+        assert arm.override == 1.0
+        job = arm.run(long, wait=False)
+        wait_for(lambda: job.nominal_time > 0.3)
+        arm.override = 0.4
+        assert arm.override == 0.4
+        job.wait()
+    log = job.log
+    assert job.state == "finished"
+    assert log.rate.min() < 0.41
+    assert len(log) * 0.002 > long.duration + 0.3
+    assert_on_path(log, long)
+    np.testing.assert_allclose(log.q[-1], long.end, atol=1e-9)
+
+
+@pytest.mark.parametrize("share", [-0.1, 1.1, np.nan, "half", None])
+def test_a_bad_override_is_refused(share):
+    with (
+        vp.connect("sim://puma560") as arm,
+        pytest.raises(errors.BadArgumentError, match="override"),
+    ):
+        arm.override = share
+
+
+def test_an_exception_in_the_block_brings_the_arm_to_rest_on_its_path(long):
+    def interrupted():
+        with vp.connect("sim://puma560", start=long.start) as arm:
+            jobs.append(arm.run(long, wait=False))
+            wait_for(lambda: jobs[0].nominal_time > 0.3)
+            raise ZeroDivisionError
+
+    jobs = []
+    with pytest.raises(ZeroDivisionError):
+        interrupted()
+    log = jobs[0].log
+    assert jobs[0].state == "stopped"
+    np.testing.assert_allclose(log.qd[-1], 0.0, atol=1e-9)
+    assert_on_path(log, long)
+
+
+def test_a_closed_arm_refuses(short):
+    arm = vp.connect("sim://puma560", start=short.start)
+    arm.close()
+    arm.close()
+    with pytest.raises(errors.DriveFaultError, match="no longer connected"):
+        arm.run(short)
+
+
+def test_the_log_goes_into_files(short, tmp_path):
+    with vp.connect("sim://puma560", start=short.start) as arm:
+        log = arm.run(short).log
+    log.save_npz(tmp_path / "log.npz")
+    log.save_csv(tmp_path / "log.csv")
+    with np.load(tmp_path / "log.npz") as arrays:
+        np.testing.assert_array_equal(arrays["q"], log.q)
+        np.testing.assert_array_equal(arrays["stamp"], log.stamp)
+    lines = (tmp_path / "log.csv").read_text(encoding="ascii").splitlines()
+    assert len(lines) == len(log) + 1
+    header = lines[0].split(",")
+    first = header.index("q1")
+    rows = [list(map(float, row.split(",")[first : first + 6])) for row in lines[1:]]
+    np.testing.assert_array_equal(rows, log.q)
+
+
+def test_latencies_are_measured(short):
+    with vp.connect("sim://puma560", start=short.start) as arm:
+        job = arm.run(short)
+        assert isinstance(arm.shortcomings, list)
+    report = job.report
+    assert 0 <= report.latency_p50 <= report.latency_p99 <= report.latency_max
+    assert 0 < report.compute_p50 <= report.compute_max
+    assert report.wall_time > 0
+
+
+SCRIPT = """
+    import sys
+    import numpy as np
+    import viapoint as vp
+
+    robot = vp.load_robot("puma560")
+    start = np.array({start})
+    motion = vp.Program(robot, start=start, scale=0.25).movej(start + [1.5, -1, 0, 1, -1, 2]).plan()
+    jobs = []
+    try:
+        with vp.connect("sim://puma560", start=start) as arm:
+            job = arm.run(motion, wait=False)
+            jobs.append(job)
+            print("running", flush=True)
+            {body}
+    except KeyboardInterrupt:
+        log = jobs[0].log
+        path = motion.sample(2e-4).q
+        miss = max(np.abs(path - q).max(axis=1).min() for q in log.q[::10])
+        at_end = np.abs(log.q[-1] - motion.end).max()
+        print(jobs[0].state, np.abs(log.qd[-1]).max(), miss, at_end, flush=True)
+        raise
+"""
+
+
+@pytest.mark.parametrize("body", ["job.wait()", "import time; time.sleep(30)"])
+def test_ctrl_c_brings_the_arm_to_rest_on_its_path_and_goes_on_up(abc, body, tmp_path):
+    script = tmp_path / "script.py"
+    script.write_text(
+        textwrap.dedent(SCRIPT).format(start=abc["A"].tolist(), body=body), encoding="utf-8"
+    )
+    process = subprocess.Popen(
+        [sys.executable, str(script)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        env=os.environ.copy(),
+    )
+    assert process.stdout is not None
+    assert process.stdout.readline().strip() == "running"
+    time.sleep(0.6)
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=30)
+    assert process.returncode in (-signal.SIGINT, 130), err
+    assert "KeyboardInterrupt" in err
+    state, speed, miss, from_end = out.split()
+    assert state == "stopped"
+    assert float(speed) < 1e-9
+    assert float(miss) < 2e-3
+    assert float(from_end) > 0.05

@@ -1,0 +1,193 @@
+"""The command: run, check, plot, export, robots."""
+
+import os
+import re
+import signal
+import subprocess
+import sys
+import textwrap
+import time
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import viapoint as vp
+from viapoint import cli
+
+SCRIPT = """
+    import viapoint as vp
+    robot = vp.load_robot("puma560")
+    start = [0, 0, 0, 0, 0.5, 0]
+    program = vp.Program(robot, start=start, name="{name}")
+    program.movej({target}, zone=0.01).movej([0.1, -0.1, 0.2, 0, 0.6, 0])
+    with vp.connect("sim://puma560", start=start) as arm:
+        job = arm.run(program)
+        print("the script saw", job.state, len(job.log) > 0, arm.joints.shape)
+"""
+GOOD = "[0.2, 0.1, 0, 0.1, 0.5, 0]"
+
+
+def write(path, text=SCRIPT, **values):
+    path.write_text(textwrap.dedent(text).format(**values), encoding="utf-8")
+    return str(path)
+
+
+@pytest.fixture(autouse=True)
+def elsewhere(tmp_path, monkeypatch):
+    """Pictures go into out/ of the working folder."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "120")
+    monkeypatch.setattr(cli.console, "_width", 120)
+
+
+def call(*arguments):
+    return CliRunner().invoke(cli.app, list(arguments))
+
+
+def test_run_shows_figures_and_writes_log_and_pictures(tmp_path):
+    result = call("run", write(tmp_path / "job.py", name="hello you", target=GOOD))
+    assert result.exit_code == 0, result.output
+    out = tmp_path / "out"
+    stem = "job_hello_you"
+    names = {path.name for path in out.iterdir()}
+    pictures = {f"{stem}_{what}.png" for what in ("joints", "tool", "path")}
+    assert names == {f"{stem}.csv", f"{stem}.npz", *pictures}
+    with np.load(out / f"{stem}.npz") as log:
+        np.testing.assert_allclose(log["q"][-1], [0.1, -0.1, 0.2, 0, 0.6, 0], atol=1e-9)
+        assert np.diff(log["cycle"]).tolist() == [1] * (len(log["cycle"]) - 1)
+
+
+def test_check_moves_nothing_and_waits_for_nothing(tmp_path):
+    path = write(tmp_path / "job.py", name="p", target=GOOD)
+    begin = time.monotonic()
+    result = call("check", path)
+    assert time.monotonic() - begin < 30
+    assert result.exit_code == 0, result.output
+    assert not (tmp_path / "out").exists()
+
+
+def test_check_fails_with_the_scripts_line(tmp_path):
+    path = write(tmp_path / "job.py", name="p", target="[9, 0, 0, 0, 0, 0]")
+    done = _command("check", path)
+    assert done.returncode == 1
+    assert re.search(r"job\.py:\s*6", done.stderr), done.stderr
+    assert "joint_limit" in done.stderr
+    assert "way out" in done.stderr
+
+
+def test_check_is_virtual_and_the_script_notices_nothing(tmp_path):
+    done = _command("check", write(tmp_path / "job.py", name="p", target=GOOD))
+    assert done.returncode == 0, done.stderr
+    assert "the script saw finished True (6,)" in done.stdout
+    assert "nothing is wrong" in done.stdout
+
+
+def test_plot_draws_without_motion(tmp_path):
+    result = call("plot", write(tmp_path / "job.py", name="p", target=GOOD), "--out", "pictures")
+    assert result.exit_code == 0, result.output
+    assert len(list((tmp_path / "pictures").glob("*.png"))) == 3
+
+
+def test_export_writes_programs_that_read_back(tmp_path):
+    path = write(tmp_path / "job.py", name="p", target=GOOD)
+    result = call("export", path, "-o", "programs")
+    assert result.exit_code == 0, result.output
+    program = vp.Program.load(tmp_path / "programs" / "job_p.json")
+    assert len(program) == 2
+    assert program.plan().duration > 0.1
+
+
+def test_a_program_file_runs_like_a_script(tmp_path):
+    call("export", write(tmp_path / "job.py", name="p", target=GOOD), "-o", ".")
+    result = call("run", "job_p.json")
+    assert result.exit_code == 0, result.output
+    assert (tmp_path / "out" / "job_p.csv").exists()
+
+
+def test_run_reports_the_runs_before_a_refusal(tmp_path):
+    text = SCRIPT + "        arm.run(program)\n"
+    done = _command("run", write(tmp_path / "job.py", text, name="p", target=GOOD))
+    assert done.returncode == 1
+    assert "not_at_start" in done.stderr
+    assert (tmp_path / "out" / "job_p.csv").exists()
+
+
+def test_two_runs_of_one_name_have_files_of_their_own(tmp_path):
+    text = (
+        SCRIPT + "        arm.run(vp.Program(robot, start=arm.setpoint, name='p').movej(start))\n"
+    )
+    result = call("run", write(tmp_path / "job.py", text, name="p", target=GOOD))
+    assert result.exit_code == 0, result.output
+    assert {path.stem for path in (tmp_path / "out").glob("*.csv")} == {"job_p", "job_p_2"}
+
+
+def test_a_missing_script_is_named():
+    done = _command("run", "none.py")
+    assert done.returncode == 1
+    assert "none.py" in done.stderr
+
+
+def test_a_script_that_runs_nothing_is_told(tmp_path):
+    done = _command("run", write(tmp_path / "idle.py", "print('idle')"))
+    assert done.returncode == 0
+    assert "ran nothing" in done.stdout
+
+
+def test_an_error_of_the_scripts_own_shows_its_place(tmp_path):
+    done = _command("run", write(tmp_path / "broken.py", "\n1 / 0\n"))
+    assert done.returncode == 1
+    assert "broken.py" in done.stderr
+    assert "ZeroDivisionError" in done.stderr
+
+
+def test_robots_lists_the_built_in_ones():
+    done = _command("robots")
+    assert done.returncode == 0, done.stderr
+    for name in ("panda", "puma560", "rpp", "scara", "two_link", "ur5e"):
+        assert name in done.stdout
+
+
+def test_version():
+    done = _command("--version")
+    assert done.stdout.strip() == vp.__version__
+
+
+def test_ctrl_c_stops_the_run_on_its_path_and_keeps_its_log(tmp_path):
+    text = """
+        import viapoint as vp
+        robot = vp.load_robot("puma560")
+        start = [0, 0, 0, 0, 0.5, 0]
+        program = vp.Program(robot, start=start, scale=0.1, name="p").movej([2, 1, 1, 1, 1, 1])
+        with vp.connect("sim://puma560", start=start) as arm:
+            print("running", flush=True)
+            arm.run(program)
+    """
+    path = write(tmp_path / "job.py", text)
+    process = subprocess.Popen(
+        [sys.executable, "-m", "viapoint.cli", "run", path],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    assert process.stdout is not None
+    assert process.stdout.readline().strip() == "running"
+    time.sleep(1.0)
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=60)
+    assert process.returncode != 0
+    assert "stopped" in out, err
+    with np.load(tmp_path / "out" / "job_p.npz") as log:
+        np.testing.assert_allclose(log["qd"][-1], 0.0, atol=1e-9)
+        assert log["q"][-1][0] < 1.9
+
+
+def _command(*arguments):
+    return subprocess.run(
+        [sys.executable, "-m", "viapoint.cli", *arguments],
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=120,
+        env={**os.environ, "COLUMNS": "200"},
+    )

@@ -1,0 +1,59 @@
+"""An exported program in viapoint-controller, with no Python, gives the same setpoints."""
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import viapoint as vp
+from viapoint import mm
+
+
+@pytest.fixture(scope="module")
+def controller() -> str:
+    beside = Path(sys.executable).parent / "viapoint-controller"
+    found = str(beside) if beside.exists() else shutil.which("viapoint-controller")
+    if found is None:
+        pytest.skip("viapoint-controller is not installed: bit-identity was NOT tested")
+    return found
+
+
+def program_of(kind, puma, abc):
+    program = vp.Program(puma, start=abc["A"], name=kind)
+    if kind == "joints":
+        return program.movej(abc["B"], zone=50 * mm).set_do(3, True).movej(abc["C"]).wait(0.05)
+    program.movel(puma.fk(abc["B"]), orientation="wrist", zone=50 * mm)
+    return program.movel(puma.fk(abc["C"]), orientation="wrist", scale=0.7)
+
+
+@pytest.mark.parametrize("kind", ["joints", "lines"])
+def test_the_setpoints_are_the_same_to_the_last_bit(controller, puma, abc, kind, tmp_path):
+    program = program_of(kind, puma, abc)
+    path, log = tmp_path / "p.json", tmp_path / "log.csv"
+    program.save(path)
+    done = subprocess.run(
+        [controller, "--robot", "puma560", "--program", str(path), "--log", str(log)],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    with vp.connect("sim://puma560", start=abc["A"]) as arm:
+        here = arm.run(program).log
+    here.save_csv(tmp_path / "here.csv")
+    columns = [f"{name}{i}" for name in ("q", "qd", "qdd", "qddd") for i in range(1, 7)]
+    columns += ["cycle", "nominal_time", "rate", "move", "outputs"]
+    there, ours = (_columns(file, columns) for file in (log, tmp_path / "here.csv"))
+    assert len(there["cycle"]) == len(ours["cycle"])
+    for name in columns:
+        assert there[name] == ours[name], name  # as text: to the last bit
+    np.testing.assert_array_equal([float(x) for x in there["q1"]], here.q[:, 0])
+
+
+def _columns(path, names):
+    header, *rows = [line.split(",") for line in path.read_text(encoding="ascii").splitlines()]
+    return {name: [row[header.index(name)] for row in rows] for name in names}

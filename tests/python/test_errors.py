@@ -1,0 +1,97 @@
+"""One class a code, one tree, all attributes, and a way across processes."""
+
+import pickle
+
+import pytest
+
+import viapoint as vp
+from viapoint import _core, errors
+
+
+def test_every_code_of_the_core_has_one_class_of_its_own():
+    classes = [errors.error_class(code) for code in _core.error_codes()]
+    assert len(set(classes)) == len(classes)
+    for code, cls in zip(_core.error_codes(), classes, strict=True):
+        assert cls.code == code
+        assert issubclass(cls, vp.MotionError)
+
+
+def test_no_class_stands_for_a_code_the_core_does_not_know():
+    for name in errors.__all__:
+        cls = getattr(errors, name)
+        if isinstance(cls, type) and issubclass(cls, vp.MotionError) and "code" in vars(cls):
+            assert cls is vp.MotionError or cls.code in _core.error_codes(), name
+
+
+def test_every_error_class_is_exported():
+    for code in _core.error_codes():
+        assert errors.error_class(code).__name__ in errors.__all__
+
+
+@pytest.mark.parametrize(
+    ("child", "parent"),
+    [
+        (errors.JointLimitError, errors.LimitError),
+        (errors.SingularError, errors.PoseError),
+        (errors.EmptyProgramError, errors.ProgramError),
+        (errors.NotAtStartError, errors.RunError),
+        (errors.BadArgumentError, ValueError),
+        (errors.FileError, OSError),
+    ],
+)
+def test_the_tree(child: type, parent: type):
+    assert issubclass(child, parent)
+    assert issubclass(child, vp.MotionError)
+
+
+def test_an_error_carries_the_fields_of_its_problem():
+    problem = _core.Problem(
+        "joint_limit",
+        "joint 4 leaves its limit",
+        ways_out=["movej(...)", 'orientation="wrist"'],
+        move=1,
+        file="script.py",
+        line=12,
+        joint=3,
+        time=0.5,
+        share=0.74,
+        value=2.5,
+        limit=2.4,
+    )
+    error = errors.from_problem(problem)
+    assert type(error) is errors.JointLimitError
+    for field in ("code", *vars(error)):
+        assert getattr(error, field) == getattr(problem, field), field
+    assert str(error) == problem.describe()
+    assert str(error).startswith("script.py:12: joint 4 leaves its limit")
+    assert "way out: movej(...)" in str(error)
+
+
+def test_fields_that_do_not_apply_are_none():
+    error = errors.BusyError("busy")
+    assert error.ways_out == []
+    assert error.file == ""
+    assert (error.move, error.line, error.joint) == (None, None, None)
+    assert (error.time, error.share, error.value, error.limit) == (None, None, None, None)
+
+
+@pytest.mark.parametrize("code", _core.error_codes())
+def test_errors_survive_pickling(code: str):
+    error = errors.error_class(code)("what", ways_out=["how"], line=3, value=1.5)
+    again = pickle.loads(pickle.dumps(error))
+    assert type(again) is type(error)
+    assert str(again) == str(error)
+    assert (again.line, again.value, again.ways_out) == (3, 1.5, ["how"])
+
+
+def test_the_core_raises_the_class_of_the_code():
+    with pytest.raises(errors.BadRobotError) as caught:
+        _core.load_robot("no_such_robot")
+    assert caught.value.code == "bad_robot"
+    with pytest.raises(errors.FileError, match="no_such_folder"):
+        _core.read_file("/no_such_folder/p.json")
+
+
+def test_an_unknown_code_is_refused():
+    with pytest.raises(errors.BadArgumentError, match="no error code"):
+        _core.Problem("nonsense", "…")

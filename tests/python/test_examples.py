@@ -1,0 +1,55 @@
+"""Every example runs as it is, quickly, and says what it should."""
+
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+EXAMPLES = Path(__file__).parents[2] / "python" / "examples"
+
+SAYS = {
+    "override_and_stop.py": ["paused", "finished", "stopped after"],
+    "puma560_abc.py": [
+        "joint_limit",
+        "joint_limit of joint 4 after 74 % of the leg",
+        'orientation="wrist"',
+        "movej",
+        "deviation from A→B→C",
+        "knots",
+        "manipulability",
+    ],
+    "puma560_quintic.py": ["quintic: tool path", "trapezoid"],
+    "puma560_timed.py": ["501 samples, 1 s", "the drive refuses: NotAtRestError"],
+    "rpp.py": ["finished", "height stays between 0.5000"],
+    "scara.py": ["finished", "gripper at"],
+    "teach_playback.py": ["seam.json holds above, seam start, seam end", "finished"],
+    "two_link.py": ["72.8856 -41.4096", "54.6642 -18.2214", "finished"],
+}
+
+
+def test_every_example_is_here():
+    assert {path.name for path in EXAMPLES.glob("*.py")} == set(SAYS)
+
+
+@pytest.mark.parametrize("name", SAYS)
+def test_example(name, tmp_path):
+    begin = time.monotonic()
+    done = subprocess.run(
+        [sys.executable, "-W", "error", str(EXAMPLES / name)],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+        env={**os.environ, "COLUMNS": "120"},
+    )
+    seconds = time.monotonic() - begin
+    assert done.returncode == 0, done.stderr
+    assert done.stderr == ""
+    for text in SAYS[name]:
+        assert text in done.stdout, done.stdout
+    assert list(tmp_path.iterdir()) == []  # an example leaves nothing behind
+    assert seconds < 60

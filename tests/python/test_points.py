@@ -1,0 +1,184 @@
+"""Teach and playback: no point is ever lost, no damaged file overwritten."""
+
+import json
+
+import numpy as np
+import pytest
+
+import viapoint as vp
+from viapoint import errors
+
+
+@pytest.fixture
+def file(tmp_path):
+    return tmp_path / "points.json"
+
+
+@pytest.fixture
+def points(file, puma, abc):
+    taught = vp.PointList(file, puma)
+    for key in "ABC":
+        taught.record(key, abc[key])
+    return taught
+
+
+def test_points_read_back_to_the_last_bit(points, file, abc):
+    again = vp.PointList(file)
+    assert again.robot.name == "puma560"
+    assert list(again) == ["A", "B", "C"]
+    for key in "ABC":
+        np.testing.assert_array_equal(again[key], abc[key])
+
+
+def test_every_record_is_on_disk_when_it_returns(file, puma, abc):
+    points = vp.PointList(file, puma)
+    assert not file.exists()
+    for count, key in enumerate("ABC", start=1):
+        points.record(key, abc[key])
+        assert len(vp.PointList(file)) == count
+        assert list(file.parent.iterdir()) == [file]  # nothing left lying about
+
+
+def test_a_known_name_is_replaced_in_its_place(points, file, abc):
+    points.record("B", abc["B"] + 0.1)
+    again = vp.PointList(file)
+    assert list(again) == ["A", "B", "C"]
+    np.testing.assert_array_equal(again["B"], abc["B"] + 0.1)
+
+
+def test_remove_takes_a_point_out_of_the_file(points, file):
+    points.remove("B")
+    assert list(vp.PointList(file)) == ["A", "C"]
+    with pytest.raises(errors.BadArgumentError, match='no point "B"'):
+        points.remove("B")
+
+
+def test_two_lists_on_one_file_lose_nothing(points, file, abc):
+    other = vp.PointList(file)
+    points.record("D", abc["A"])
+    other.record("E", abc["A"])
+    assert list(vp.PointList(file)) == ["A", "B", "C", "D", "E"]
+
+
+def test_the_arm_teaches_where_it_stands(file, puma, abc):
+    points = vp.PointList(file, puma)
+    with vp.connect("sim://puma560", start=abc["B"]) as arm:
+        np.testing.assert_array_equal(arm.teach("here", points), abc["B"])
+    np.testing.assert_array_equal(vp.PointList(file)["here"], abc["B"])
+
+
+def test_playback_passes_every_point(points, abc):
+    motion = points.program(kind="ptp").plan()
+    samples = motion.sample(0.0005)
+    for key in "ABC":
+        assert np.abs(samples.q - abc[key]).max(axis=1).min() < 1e-6
+    np.testing.assert_allclose(motion.end, abc["C"], atol=1e-12)
+
+
+def test_playback_from_elsewhere_goes_to_the_first_point(points, abc, puma):
+    home = abc["A"] + 0.1
+    program = points.program(kind="ptp", start=home)
+    assert len(program) == 3
+    motion = program.plan()
+    np.testing.assert_allclose(motion.start, home, atol=1e-12)
+    assert np.abs(motion.sample(0.001).q - abc["A"]).max(axis=1).min() < 1e-9
+
+
+def test_playback_in_lines_is_straight(file, puma, abc):
+    points = vp.PointList(file, puma)
+    q = abc["A"]
+    pose = puma.fk(q)
+    points.record("one", q)
+    for name, offset in (("two", [0.1, 0.0, 0.1]), ("three", [0.1, 0.1, 0.1])):
+        goal = pose.copy()
+        goal[:3, 3] += offset
+        q = puma.ik(goal, near=q)
+        points.record(name, q)
+    motion = points.program(kind="lin", speed=0.2).plan()
+    path = motion.sample(0.002).pose[:, :3, 3] - pose[:3, 3]
+    first = path[path[:, 1] < 1e-6]
+    np.testing.assert_allclose(first[:, 0], first[:, 2], atol=1e-4)
+
+
+def test_playing_back_too_few_points_is_refused(file, puma, abc):
+    points = vp.PointList(file, puma)
+    with pytest.raises(errors.EmptyProgramError, match="0 points"):
+        points.program()
+    points.record("A", abc["A"])
+    with pytest.raises(errors.EmptyProgramError, match="1 points"):
+        points.program()
+    assert len(points.program(start=abc["B"])) == 1
+
+
+@pytest.mark.parametrize("kind", ["spline", "", None, 3])
+def test_an_unknown_kind_of_playback_is_refused(points, kind):
+    with pytest.raises(errors.BadArgumentError, match="kind"):
+        points.program(kind=kind)
+
+
+@pytest.mark.parametrize("name", ["", "  ", None, 3])
+def test_a_point_needs_a_name(points, abc, name):
+    with pytest.raises(errors.BadArgumentError, match="name"):
+        points.record(name, abc["A"])
+
+
+@pytest.mark.parametrize("q", [[1, 2], [np.nan] * 6, "here"])
+def test_bad_joints_are_refused_and_nothing_is_lost(points, file, q):
+    before = file.read_bytes()
+    with pytest.raises(errors.BadArgumentError, match="q"):
+        points.record("D", q)
+    assert file.read_bytes() == before
+    assert "D" not in points
+
+
+def test_a_missing_file_without_a_robot_is_refused(file):
+    with pytest.raises(errors.FileError, match="no point file"):
+        vp.PointList(file)
+
+
+DAMAGES = {
+    "truncated": lambda text: text[: len(text) // 2],
+    "empty": lambda text: "",
+    "no JSON": lambda text: "points: A",
+    "other format": lambda text: text.replace("viapoint points", "something else"),
+    "newer version": lambda text: text.replace('"version": 1', '"version": 2'),
+    "no robot": lambda text: text.replace('"robot"', '"arm"'),
+    "no list": lambda text: json.dumps({**json.loads(text), "points": {}}),
+    "no joints": lambda text: text.replace('"q"', '"joints"'),
+    "text for joints": lambda text: json.dumps(
+        {**json.loads(text), "points": [{"name": "A", "q": ["a"] * 6}]}
+    ),
+    "NaN": lambda text: json.dumps(
+        {**json.loads(text), "points": [{"name": "A", "q": [float("nan")] * 6}]}
+    ),
+    "twice": lambda text: text.replace('"name": "B"', '"name": "A"'),
+    "a list": lambda text: "[]",
+}
+
+
+@pytest.mark.parametrize("damage", DAMAGES)
+def test_a_damaged_file_is_named_and_left_alone(points, file, puma, abc, damage):
+    file.write_text(DAMAGES[damage](file.read_text(encoding="utf-8")), encoding="utf-8")
+    before = file.read_bytes()
+    for attempt in (
+        lambda: vp.PointList(file),
+        lambda: vp.PointList(file, puma),
+        lambda: points.record("D", abc["A"]),
+    ):
+        with pytest.raises(errors.BadProgramError) as caught:
+            attempt()
+        assert str(file) in str(caught.value)
+        assert file.read_bytes() == before
+    assert "D" not in points
+
+
+def test_points_of_another_robot_are_refused(points, file):
+    with pytest.raises(errors.BadProgramError, match="puma560"):
+        vp.PointList(file, vp.load_robot("ur5e"))
+
+
+def test_a_file_that_cannot_be_written_keeps_the_list_as_it_was(tmp_path, puma, abc):
+    points = vp.PointList(tmp_path / "no_such_folder" / "p.json", puma)
+    with pytest.raises(errors.FileError, match="no_such_folder"):
+        points.record("A", abc["A"])
+    assert len(points) == 0
