@@ -15,14 +15,10 @@
 #include <vector>
 
 #include "trajectory/path_timing_grid.hpp"
+#include "trajectory/path_timing_newton.hpp"
 #include "trajectory/path_timing_span.hpp"
 
 namespace viapoint::path_timing {
-
-/// b and b' at the nodes of a grid.
-struct SquareRate {
-  std::vector<double> value, slope;
-};
 
 class BarrierProblem {
  public:
@@ -62,7 +58,7 @@ class BarrierProblem {
   };
   /// Jerk rows at share x of a cell; b, b', b'' there by the cell's four unknowns.
   struct Place {
-    std::array<double, 4> value{}, slope{}, bend{};
+    Four value{}, slope{}, bend{};
     Rows rows;
   };
   struct CellRows {
@@ -71,14 +67,15 @@ class BarrierProblem {
     size_t count = 0;                                       ///< of places
     double velocity = 1.0, acceleration = 1.0, jerk = 1.0;  ///< factors on the limits
   };
-  struct Newton;
 
   void add_acceleration_rows(const PathPoint& p, const JointPiece& piece, Rows& rows);
   void add_jerk_rows(const PathPoint& p, const JointPiece& piece, Rows& rows);
   double ramp_ceiling(const JointPiece& piece, double from, double to, bool leaving) const;
-  double largest_step(const SquareRate& rate, const SquareRate& step, const Newton& newton) const;
+  double largest_step(const SquareRate& rate, const SquareRate& step,
+                      const NewtonSystem& newton) const;
   /// Gradient of the barrier with one weight, curvature with another.
-  void assemble(const SquareRate& rate, double weight, double curvature, Newton& newton) const;
+  void assemble(const SquareRate& rate, double weight, double curvature,
+                NewtonSystem& newton) const;
   double start_tie() const { return 4.0 / 3.0 / cells_.front().length; }
   double end_tie() const { return -4.0 / 3.0 / cells_.back().length; }
 
