@@ -84,7 +84,7 @@ class Follower {
     const double h = to - from.t;
     JointVector q = from.q + h * (from.qd + 0.5 * h * from.qdd);
     if (!solve(motion_.at(part, to).pose, q)) return std::nullopt;
-    const std::optional<Knot> knot = rates_at(part, to, q);
+    std::optional<Knot> knot = rates_at(part, to, q);
     if (!knot) return std::nullopt;
     const TrajectoryPiece piece = piece_of(from, *knot);
     double position = 0.0, angle = 0.0;
