@@ -25,16 +25,16 @@ class Snapshot {
   /// One writer. Real-time: safe.
   void write(const JointVector& position,
              const Measurement& measurement) noexcept VIAPOINT_NONBLOCKING {
+    // Whoever sees one of the values below sees the odd version too: each store releases it.
     const std::uint64_t version = version_.load(std::memory_order_relaxed);
     version_.store(version + 1, std::memory_order_relaxed);
-    std::atomic_thread_fence(std::memory_order_release);
     for (int i = 0; i < joints_; ++i) {
       const auto at = static_cast<std::size_t>(i);
-      position_[at].store(position[i], std::memory_order_relaxed);
+      position_[at].store(position[i], std::memory_order_release);
       measured_[at].store(i < measurement.q.size() ? measurement.q[i] : 0.0,
-                          std::memory_order_relaxed);
+                          std::memory_order_release);
     }
-    inputs_.store(measurement.inputs, std::memory_order_relaxed);
+    inputs_.store(measurement.inputs, std::memory_order_release);
     version_.store(version + 2, std::memory_order_release);
   }
 

@@ -1,0 +1,37 @@
+#include "controller/options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+
+#include "controller/exit_code.hpp"
+
+namespace viapoint::controller {
+
+CommandLine read_command_line(int argc, const char* const* argv) {
+  Options options;
+  double cycle_ms = 2.0;
+  CLI::App app{"Runs a motion program on a simulated arm, one setpoint a cycle."};
+  app.name("viapoint-controller");
+  app.add_option("--robot", options.robot, "a built-in robot, or a .yaml or .urdf file")
+      ->required();
+  app.add_option("--program", options.program, "the program, a .json file")->required();
+  app.add_option("--log", options.log, "where to write every cycle's setpoint, as CSV")->required();
+  app.add_option("--cycle-ms", cycle_ms, "the cycle in milliseconds")
+      ->check(CLI::Range(0.1, 1000.0))
+      ->capture_default_str();
+  app.add_flag("--virtual", options.virtual_time,
+               "run in virtual time: the same setpoints, as fast as the processor can");
+  app.footer(
+      "Exit codes: 0 the motion ran to its end; 1 program or motion refused, nothing moved;\n"
+      "2 wrong command line; 3 a file cannot be read or written; 4 the drive failed;\n"
+      "5 stopped by SIGINT or SIGTERM, the arm rests on its path.");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return {std::nullopt, app.exit(error) == 0 ? kFinished : kUsage};
+  }
+  options.cycle = std::chrono::nanoseconds(std::llround(cycle_ms * 1e6));
+  return {options, kFinished};
+}
+
+}  // namespace viapoint::controller

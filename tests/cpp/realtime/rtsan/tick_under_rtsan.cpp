@@ -1,0 +1,81 @@
+// Runs the real-time path under RealtimeSanitizer, which ends the process at the first heap call,
+// lock or system call below a function marked VIAPOINT_NONBLOCKING. With --allocate it does what is
+// forbidden, to show that it would be caught.
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <random>
+#include <vector>
+
+#include "realtime/random_motion.hpp"
+#include "viapoint/drives/simulated_drive.hpp"
+#include "viapoint/realtime/controller_loop.hpp"
+#include "viapoint/realtime/interpolator.hpp"
+
+namespace viapoint {
+namespace {
+
+constexpr std::chrono::nanoseconds kCycle{2'000'000};
+constexpr int kCycles = 100'000;
+
+void allocate() noexcept VIAPOINT_NONBLOCKING {
+  const std::vector<double> forbidden(1000);
+  std::printf("%p\n", static_cast<const void*>(forbidden.data()));
+}
+
+void command_at_random(std::mt19937& random, Interpolator& interpolator, int cycle) {
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  if (cycle > 1500) return interpolator.wish(Wish::kStop);
+  if (cycle > 1000) {
+    interpolator.wish(Wish::kRun);
+    return interpolator.set_override(1.0);
+  }
+  if (unit(random) > 0.03) return;
+  if (unit(random) < 0.5) return interpolator.set_override(unit(random));
+  interpolator.wish(unit(random) < 0.3 ? Wish::kPause : Wish::kRun);
+}
+
+void tick_with_commands() {
+  int ticks = 0, stopped = 0;
+  for (unsigned seed = 0; ticks < kCycles; ++seed) {
+    std::mt19937 random(seed);
+    const Motion motion = random_motion(random);
+    Interpolator interpolator(motion.limits, kCycle, motion.trajectory.at(0.0).q);
+    interpolator.begin(motion.trajectory);
+    Setpoint setpoint;
+    for (int k = 0; interpolator.active(); ++k, ++ticks) {
+      command_at_random(random, interpolator, k);
+      interpolator.tick(setpoint);
+    }
+    stopped += interpolator.state() == RunState::kStopped ? 1 : 0;
+  }
+  std::printf("%d ticks, %d motions stopped on their path\n", ticks, stopped);
+}
+
+void run_the_loop() {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    std::mt19937 random(seed);
+    const Motion motion = random_motion(random);
+    ControllerLoop loop(std::make_unique<SimulatedDrive>(motion.trajectory.at(0.0).q),
+                        motion.limits, {}, std::make_unique<VirtualClock>());
+    loop.set_override(0.5);
+    const auto job = loop.run(std::make_shared<Trajectory>(motion.trajectory));
+    loop.set_override(1.0);
+    if (seed % 2 == 0) job->stop();
+    job->wait(60.0);
+  }
+  std::printf("20 runs of the loop\n");
+}
+
+}  // namespace
+}  // namespace viapoint
+
+int main(int argc, char** argv) {
+  if (argc > 1 && std::strcmp(argv[1], "--allocate") == 0) {
+    viapoint::allocate();
+    return 0;
+  }
+  viapoint::tick_with_commands();
+  viapoint::run_the_loop();
+  return 0;
+}
