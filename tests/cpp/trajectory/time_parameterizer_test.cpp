@@ -2,9 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
 #include "trajectory/time_parameterizer_problems.hpp"
 #include "viapoint/core/error.hpp"
 #include "viapoint/profile/jerk_profile.hpp"
+#include "viapoint/trajectory/certificate.hpp"
 
 namespace viapoint::testing {
 namespace {
@@ -118,9 +123,20 @@ double uniformly_bounded_time(const JointPath& path, const JointLimits& limits) 
   return rest_to_rest(path.length(), rate, change, jerk).total();
 }
 
+/// The proof of the trajectory's own checker.
+void expect_certified(const std::vector<TrajectoryPiece>& pieces, const JointLimits& limits) {
+  const Certificate certificate = certify(pieces, limits);
+  for (const auto* extrema :
+       {&certificate.velocity, &certificate.acceleration, &certificate.jerk}) {
+    for (const Extremum& extremum : *extrema) EXPECT_LE(extremum.share, kShare);
+  }
+  EXPECT_TRUE(certificate.holds()) << certificate.problems.front().describe();
+}
+
 void expect_sound_and_quick(const JointPath& path, const JointLimits& limits, int samples) {
   const auto pieces = parameterize(path, limits);
   expect_sound(path, limits, pieces, samples);
+  expect_certified(pieces, limits);
   EXPECT_LE(duration_of(pieces), uniformly_bounded_time(path, limits));
 }
 
