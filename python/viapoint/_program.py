@@ -24,7 +24,7 @@ from ._report import Report
 from ._robot import Robot, load_robot
 from ._source import caller
 from ._zone import ZoneLike, zone_of
-from .errors import BadArgumentError, BadProgramError
+from .errors import BadArgumentError, BadProgramError, MotionError
 
 OUTPUTS = 64
 
@@ -272,7 +272,11 @@ class Program:
         MotionError
             The first error of the report.
         """
-        core = _core.plan(self.robot._core, self._core, *self._tolerances)
+        try:
+            core = _core.plan(self.robot._core, self._core, *self._tolerances)
+        except MotionError as error:
+            _session.current().refused(self, error)
+            raise
         motion = Motion(core, self, Report(core.problems))
         _session.current().planned(motion)
         return motion

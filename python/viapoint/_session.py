@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from ._job import Job
     from ._motion import Motion
+    from ._program import Program
+    from .errors import MotionError
 
 
 class Session:
@@ -29,6 +31,9 @@ class Session:
 
     def planned(self, motion: Motion) -> None:
         """Hear that a program was planned."""
+
+    def refused(self, program: Program, error: MotionError) -> None:
+        """Hear that a program could not be planned."""
 
     def started(self, motion: Motion, job: Job) -> None:
         """Hear that a motion has begun."""

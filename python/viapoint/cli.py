@@ -19,6 +19,7 @@ from ._job import Job
 from ._motion import Motion
 from ._outcome import file_stem, motion_tables, run_tables, write_pictures, write_run
 from ._program import Program
+from ._report import Report
 from ._robot import load_robot
 from .errors import FileError, MotionError
 
@@ -46,16 +47,23 @@ class Recorder(_session.Session):
         Everything planned, in order.
     runs : list of Job
         Everything run, in order.
+    refusals : list of (Program, MotionError)
+        Everything that could not be planned.
     """
 
     def __init__(self, virtual: bool) -> None:
         self.virtual = virtual
         self.motions: list[Motion] = []
         self.runs: list[Job] = []
+        self.refusals: list[tuple[Program, MotionError]] = []
 
     def planned(self, motion: Motion) -> None:
         """Keep the motion."""
         self.motions.append(motion)
+
+    def refused(self, program: Program, error: MotionError) -> None:
+        """Keep what was refused, and why."""
+        self.refusals.append((program, error))
 
     def started(self, motion: Motion, job: Job) -> None:
         """Keep the run."""
@@ -109,7 +117,7 @@ def run(script: Script, out: Folder = Path("out")) -> None:
     """Run a script; then show its figures and write its logs and pictures."""
     recorder = ProgressRecorder()
     try:
-        with _reported():
+        with _reported(recorder):
             _execute(script, recorder)
     finally:
         recorder.close()
@@ -125,18 +133,13 @@ def run(script: Script, out: Folder = Path("out")) -> None:
 def check(script: Script) -> None:
     """Check what a script would run, without any motion and without waiting."""
     recorder = Recorder(virtual=True)
-    failed: MotionError | None = None
     try:
-        _execute(script, recorder)
-    except MotionError as error:
-        failed = error
-    for motion in recorder.chosen:
-        console.print(f"[bold]{motion.program.name}[/bold], {motion.duration:.3f} s: ", end="")
-        console.print(motion.report)
-    if failed is not None:
-        errors.print(f"[bold red]error {failed.code}:[/bold red]", end=" ")
-        errors.print(str(failed), markup=False, highlight=False)
-        raise typer.Exit(1)
+        with _reported(recorder):
+            _execute(script, recorder)
+    finally:
+        for motion in recorder.chosen:
+            console.print(f"[bold]{motion.program.name}[/bold], {motion.duration:.3f} s: ", end="")
+            console.print(motion.report)
     if not recorder.chosen:
         console.print("The script planned nothing.")
 
@@ -145,7 +148,7 @@ def check(script: Script) -> None:
 def plot(script: Script, out: Folder = Path("out")) -> None:
     """Draw what a script would run, without any motion."""
     recorder = Recorder(virtual=True)
-    with _reported():
+    with _reported(recorder):
         _execute(script, recorder)
         taken: set[str] = set()
         for motion in recorder.chosen:
@@ -157,7 +160,7 @@ def plot(script: Script, out: Folder = Path("out")) -> None:
 def export(script: Script, out: Folder = Path("out")) -> None:
     """Write the programs of a script as files for viapoint-controller."""
     recorder = Recorder(virtual=True)
-    with _reported():
+    with _reported(recorder):
         _execute(script, recorder)
         out.mkdir(parents=True, exist_ok=True)
         taken: set[str] = set()
@@ -227,13 +230,18 @@ def _execute_program(path: Path) -> None:
 
 
 @contextmanager
-def _reported() -> Iterator[None]:
-    """Turn a refusal into its text and exit code 1."""
+def _reported(recorder: Recorder) -> Iterator[None]:
+    """Turn a refusal into exit code 1 and its text: all that is wrong with a program, at once."""
     try:
         yield
     except MotionError as error:
-        errors.print(f"[bold red]error {error.code}:[/bold red]", end=" ")
-        errors.print(str(error), markup=False, highlight=False)
+        for program, reason in recorder.refusals:
+            if reason is error:
+                errors.print(f"[bold]{program.name}[/bold]: ", end="")
+                errors.print(program.check())
+                break
+        else:
+            errors.print(Report([error.problem]))
         raise typer.Exit(1) from error
 
 

@@ -76,6 +76,17 @@ def test_check_fails_with_the_scripts_line(tmp_path):
     assert "way out" in done.stderr
 
 
+def test_check_says_all_that_is_wrong_at_once(tmp_path):
+    text = SCRIPT.replace(".movej({target}", ".movej({target}).movej([0, 9, 0, 0, 0, 0]")
+    done = _command(
+        "check", write(tmp_path / "job.py", text, name="p", target="[9, 0, 0, 0, 0, 0]")
+    )
+    assert done.returncode == 1
+    assert "2 errors" in done.stderr
+    assert "joint 1" in done.stderr
+    assert "joint 2" in done.stderr
+
+
 def test_check_is_virtual_and_the_script_notices_nothing(tmp_path):
     done = _command("check", write(tmp_path / "job.py", name="p", target=GOOD))
     assert done.returncode == 0, done.stderr
