@@ -114,13 +114,17 @@ update_package() {
   local site
   site=$("$venv/bin/python" -c 'import sysconfig; print(sysconfig.get_path("platlib"))')
   install_changed "$tree"/cpp/bindings/_core*.so "$site/viapoint"
-  install_changed "$tree"/cpp/controller/viapoint-controller "$venv/bin"
+  install_changed "$tree/cpp/controller/viapoint-controller" "$venv/bin"
+  local robot
+  for robot in "$root"/python/viapoint/robots/*; do
+    install_changed "$robot" "$venv/share/viapoint/robots"
+  done
 }
 
 install_changed() { # <file> <folder>; by rename, so that a running program keeps its own
   local target="$2/${1##*/}"
   cmp -s "$1" "$target" && return 0
-  cp "$1" "$target.new" && chmod 755 "$target.new" && mv "$target.new" "$target"
+  cp -p "$1" "$target.new" && mv "$target.new" "$target"
 }
 
 # setup [CMake target...]: everything the caller needs, by default what runs and not the tests.
