@@ -24,9 +24,16 @@ struct Corner {
                                 ///< [m]; 0 for an arm without kinematics
 };
 
-/// The largest corner within the zone and the room left.
+/// The largest corner within the zone and the room left. Radius: each leg is cut where the tool is
+/// that far from the corner, and blend and cut parts stay within it. Deviations: both legs are cut
+/// equally far back in joint distance, as far as the zone allows. A leg without the room is cut
+/// less, and the other at most four times as far back in joint distance. What is said to be kept is
+/// proven by Taylor bounds over every interval (src/path/corner_shape.hpp), and at least 99 % of
+/// the zone is used where nothing else limits the corner. Rate limits and scale of the blend are
+/// the caller's. Real-time: not. Threads: any.
 /// @param arm null for an arm without kinematics (then only joint zones are possible)
 /// @param room_before, room_after largest cuts allowed on each leg, in its own s
+/// @throws MotionError kDiscontinuous (the legs do not meet), kBadArgument (a leg without pieces)
 [[nodiscard]] Corner round_corner(const ForwardKinematics* arm, const JointPath& before,
                                   const JointPath& after, const Zone& zone, double room_before,
                                   double room_after);
