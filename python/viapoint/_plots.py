@@ -53,7 +53,17 @@ def draw_joints(samples: Samples, motion: Motion) -> Figure:
     """
     robot = motion.robot
     n = robot.joints
-    figure = Figure(figsize=(max(7.0, 2.7 * n), 8.6), layout="constrained")
+    width = max(7.0, 2.7 * n)
+    figure = Figure(figsize=(width, 8.6))
+    # Margins in inches; a constrained layout of so many axes takes longer than the drawing.
+    figure.subplots_adjust(
+        left=0.75 / width,
+        right=1 - 0.15 / width,
+        bottom=0.105,
+        top=0.915,
+        wspace=0.5 if any(robot.prismatic) else 0.34,  # mixed units: labels between the columns
+        hspace=0.22,
+    )
     figure.suptitle(_title(motion, "joints against their limits"), fontweight="bold")
     axes = figure.subplots(4, n, sharex=True, squeeze=False)
     limits = robot.limits
@@ -82,6 +92,7 @@ def draw_joints(samples: Samples, motion: Motion) -> Figure:
             if row == 3:
                 ax.set_xlabel("time [s]", fontsize=9)
     axes[0, 0].set_xlim(samples.t[0], samples.t[-1])
+    figure.align_ylabels()
     _legend(figure, [("setpoint", LINE, "-"), ("limit", LIMIT, "--"), ("next move", SWEEP, ":")])
     return figure
 
@@ -140,8 +151,8 @@ def draw_path(samples: Samples, motion: Motion) -> Figure:
     targets = _target_points(motion)
     ax.plot(*targets.T, color=SWEEP, lw=1.0, ls="--", label="straight between the points")
     ax.scatter(*targets.T, color=LIMIT, s=34, depthshade=False, label="points of the program")
-    for i, point in enumerate(targets):
-        ax.text(*(point + 0.03 * span), "start" if i == 0 else f"{i}", fontsize=11, weight="bold")
+    for point, label in _labels(targets, 1e-3 * span):
+        ax.text(*(point + 0.03 * span), label, fontsize=11, weight="bold")
     low, high = _cube_around(np.vstack([points, targets]))
     ax.set_xlim(low[0], high[0])
     ax.set_ylim(low[1], high[1])
@@ -168,7 +179,9 @@ def drawings_for(motion: Motion) -> list[str]:
 
 
 def _title(motion: Motion, what: str) -> str:
-    return f"{motion.robot.name}, {motion.program.name}: {what} ({motion.duration:.3f} s)"
+    robot, program = motion.robot.name, motion.program.name
+    name = robot if program in (robot, "program") else f"{robot}, {program}"
+    return f"{name}: {what} ({motion.duration:.3f} s)"
 
 
 def _joint_name(robot: Robot, joint: int) -> str:
@@ -199,7 +212,7 @@ def _legend(figure: Figure, entries: list[tuple[str, str, str]]) -> None:
     figure.legend(
         handles,
         [name for name, _, _ in entries],
-        loc="outside lower center",
+        loc="outside lower center" if figure.get_layout_engine() else "lower center",
         ncols=len(entries),
         frameon=False,
         fontsize=9,
@@ -216,6 +229,20 @@ def _target_points(motion: Motion) -> Vector:
         else:
             points.append(value[:3, 3] if kind == "pose" else value.reshape(-1))
     return np.array(points)
+
+
+def _labels(points: Vector, near: float) -> list[tuple[Vector, str]]:
+    """Give every point its number; those that coincide share a label."""
+    groups: list[tuple[Vector, list[str]]] = []
+    for i, point in enumerate(points):
+        name = "start" if i == 0 else str(i)
+        for place, names in groups:
+            if np.linalg.norm(place - point) <= near:
+                names.append(name)
+                break
+        else:
+            groups.append((point, [name]))
+    return [(place, ", ".join(names)) for place, names in groups]
 
 
 def _evenly_along(points: Vector, count: int) -> npt.NDArray[np.intp]:
