@@ -118,6 +118,12 @@ void BarrierProblem::make_feasible(SquareRate& rate, int rounds) const {
       rate.slope[k] = factor * (rate.slope[k] + bend * rate.value[k]);
       rate.value[k] *= factor;
     }
+    // The cubic stays positive: its Bernstein coefficients do.
+    constexpr double kSteepest = 2.5;
+    for (size_t k = 1; k + 1 < n; ++k) {
+      rate.slope[k] = std::clamp(rate.slope[k], -kSteepest * rate.value[k] / cells_[k + 1].length,
+                                 kSteepest * rate.value[k] / cells_[k].length);
+    }
     rate.slope.front() = start_tie() * rate.value.front();
     rate.slope.back() = end_tie() * rate.value.back();
   }
@@ -153,6 +159,14 @@ void BarrierProblem::assemble(const SquareRate& rate, double weight, double curv
       }
       const double share = time / static_cast<double>(cell.count);
       const double w = weight * share, c = curvature * share;
+      // The inner Bernstein coefficients of b stay positive, relative to b at the nodes.
+      for (const int side : {0, 1}) {
+        const double value = x[side == 0 ? 0 : 2];
+        const double inverse = 1.0 / (value + (side == 0 ? h : -h) / 3.0 * x[side == 0 ? 1 : 3]);
+        const Four v = side == 0 ? Four{1.0, h / 3.0, 0.0, 0.0} : Four{0.0, 0.0, 1.0, -h / 3.0};
+        newton.add(k, v, -w * inverse, c * inverse * inverse);
+        newton.gradient_b[side == 0 ? k : k + 1] += w / value;
+      }
       for (size_t p = 0; p < cell.count; ++p) {
         const Place& place = cell.places[p];
         const double at = dot(place.value, x), slope = dot(place.slope, x);
@@ -250,10 +264,9 @@ double BarrierProblem::largest_step(const SquareRate& rate, const SquareRate& st
     if (k + 1 == n) break;
     const Four x{b, rate.slope[k], rate.value[k + 1], rate.slope[k + 1]};
     const Four dx{db, ds, step.value[k + 1], step.slope[k + 1]};
-    for (const Quadrature& q : kGauss3) {
-      const Four v = basis(q.at, cell.length);
-      worst = std::max(worst, -dot(v, dx) / dot(v, x));
-    }
+    const double third = cell.length / 3.0;
+    worst = std::max({worst, -(dx[0] + third * dx[1]) / (x[0] + third * x[1]),
+                      -(dx[2] - third * dx[3]) / (x[2] - third * x[3])});
     for (size_t p = 0; p < cell.count; ++p) {
       const Place& place = cell.places[p];
       const double at = dot(place.value, x), dat = dot(place.value, dx);
@@ -273,8 +286,9 @@ double BarrierProblem::largest_step(const SquareRate& rate, const SquareRate& st
 
 bool BarrierProblem::solve(SquareRate& rate, double weight, double last_weight) const {
   constexpr double kReduction = 0.2;
-  constexpr int kMostSteps = 100, kMostAtOneWeight = 7;
-  constexpr double kStillFar = 10.0;
+  constexpr int kMostSteps = 200, kMostAtOneWeight = 7;
+  constexpr double kStillFar = 10.0, kSlowly = 0.97;
+  double before = kInfinite;
   constexpr double kBoundary = 0.95;
   const size_t n = nodes_.size();
   NewtonSystem newton(n, acceleration_rows_.size(), jerk_rows_.size());
@@ -301,7 +315,9 @@ bool BarrierProblem::solve(SquareRate& rate, double weight, double last_weight) 
     const double distance = decrement / (weight * newton.objective);
     ++at_this_weight;
     const bool central = (distance <= 1.0 && length > 0.5) ||
-                         (distance <= kStillFar && at_this_weight >= kMostAtOneWeight);
+                         (distance <= kStillFar && at_this_weight >= kMostAtOneWeight &&
+                          newton.objective > kSlowly * before);
+    before = newton.objective;
     // A slack near its end holds weight / multiplier. Right after a reduction the multiplier is
     // that of the old weight, and so is the curvature: with it the step leads to the new slack, not
     // past it (that is the primal-dual direction).

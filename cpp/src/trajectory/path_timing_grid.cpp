@@ -156,7 +156,7 @@ Grid make_grid(const JointPath& path, const JointLimits& limits) {
     }
     if (k + 1 == pieces) to -= end;
     const bool curved = piece.kind != PieceKind::kJointLine;
-    cut(samples, k, from, to, floor, curved ? 4 : 2, curved ? 12 : 24, grid.cells);
+    cut(samples, k, from, to, floor, curved ? 4 : 2, curved ? 16 : 64, grid.cells);
     if (k + 1 == pieces) grid.cells.push_back({k, to, piece.length});
   }
   // The guess: the swept speed, its valleys and peaks smoothed over neighbours.

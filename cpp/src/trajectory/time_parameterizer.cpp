@@ -67,7 +67,8 @@ std::vector<Shares> corrections(const std::vector<Shares>& meant, const JointPat
 
 /// The near-optimal timing, proven; empty if the method does not get there.
 std::vector<TimedSpan> quickest(const JointPath& path, const JointLimits& limits) {
-  constexpr int kPasses = 2;
+  constexpr int kPasses = 2, kMostPasses = 5;
+  constexpr double kGoodEnough = 1.02;
   constexpr double kFirstWeight = 0.1, kRoughWeight = 0.01, kLastWeight = 1e-3;
   BarrierProblem problem(path, limits, path_timing::make_grid(path, limits));
   SquareRate rate = problem.start();
@@ -75,18 +76,22 @@ std::vector<TimedSpan> quickest(const JointPath& path, const JointLimits& limits
   // The optimiser sees limits at a few places of a cell and b as a cubic in s; the motion is a
   // quintic in time and held to its limits everywhere. Where the two differ, the limits given to
   // the optimiser are corrected.
-  for (int pass = 0; pass < kPasses; ++pass) {
+  // Where that is not enough after the usual number of passes, a few more follow.
+  for (int pass = 1;; ++pass) {
     problem.scale_limits(corrections(problem.shares(rate), path, limits, problem.spans(rate)));
     problem.make_feasible(rate, 0);
-    const double last = pass + 1 == kPasses ? kLastWeight : 0.4 * kRoughWeight;
+    const double last = pass >= kPasses ? kLastWeight : 0.4 * kRoughWeight;
     if (!problem.solve(rate, kRoughWeight, last)) return {};
+    if (pass < kPasses) continue;
+    std::vector<TimedSpan> spans = problem.spans(rate);
+    const bool forward = std::all_of(spans.begin(), spans.end(), path_timing::goes_forward);
+    if (!forward && pass >= kMostPasses) return {};
+    if (!forward) continue;
+    const double stretch = prove(path, limits, spans, kProofSlack).stretch();
+    if (stretch > kGoodEnough && pass < kMostPasses) continue;
+    stretch_time(spans, stretch * kMargin);
+    return spans;
   }
-  std::vector<TimedSpan> spans = problem.spans(rate);
-  for (const TimedSpan& span : spans) {
-    if (!goes_forward(span)) return {};
-  }
-  stretch_time(spans, prove(path, limits, spans, kProofSlack).stretch() * kMargin);
-  return spans;
 }
 
 }  // namespace
