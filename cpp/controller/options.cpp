@@ -18,6 +18,10 @@ CommandLine read_command_line(int argc, const char* const* argv) {
   app.add_option("--log", options.log, "where to write every cycle's setpoint, as CSV")->required();
   app.add_option("--cycle-ms", cycle_ms, "the cycle in milliseconds")
       ->check(CLI::Range(0.1, 1000.0))
+      ->check([](const std::string& text) {
+        // NaN is inside every range.
+        return text.find_first_of("nN") == std::string::npos ? std::string() : "not a number";
+      })
       ->capture_default_str();
   app.add_flag("--virtual", options.virtual_time,
                "run in virtual time: the same setpoints, as fast as the processor can");

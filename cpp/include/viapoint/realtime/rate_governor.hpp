@@ -13,8 +13,10 @@
 /// where it finds no better push it follows the way back it has. A proven continuation exists at
 /// every moment, whatever is commanded. The way back also tells the rate it ends at, so the push
 /// that makes it end exactly at the wanted rate is found by the same search.
-/// (The look-ahead of Dahl & Nielsen 1990 and its followers, which scale the path speed on-line,
-/// with a proof in place of a guess, and for the jerk.)
+/// What is kept are the joints' own limits: a planned tool speed is never exceeded either (ρ <= 1),
+/// a planned tool acceleration or a move's scale may be while the rate changes. (The look-ahead of
+/// Dahl & Nielsen 1990 and its followers, which scale the path speed on-line, with a proof in place
+/// of a guess, and for the jerk.)
 #pragma once
 
 #include <array>

@@ -1,0 +1,151 @@
+#include "controller/run_program.hpp"
+
+#include <gtest/gtest.h>
+#include <pthread.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <thread>
+
+#include "controller/exit_code.hpp"
+#include "viapoint/kinematics/robot_model.hpp"
+#include "viapoint/planning/motion_planner.hpp"
+#include "viapoint/program/motion_program.hpp"
+#include "viapoint/realtime/controller_loop.hpp"
+#include "viapoint/realtime/log_csv.hpp"
+
+namespace viapoint::controller {
+namespace {
+
+namespace fs = std::filesystem;
+
+class RunProgram : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ =
+        fs::path(testing::TempDir()) /
+        (std::string("viapoint-") + testing::UnitTest::GetInstance()->current_test_info()->name() +
+         "-" + std::to_string(getpid()));
+    fs::create_directories(folder_);
+    options_.robot = "two_link";
+    options_.program = (folder_ / "program.json").string();
+    options_.log = (folder_ / "log.csv").string();
+    options_.virtual_time = true;
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  [[nodiscard]] MotionProgram program(double wait = 0.05) const {
+    MotionProgram program;
+    program.robot = robot_->name();
+    program.robot_fingerprint = robot_->fingerprint();
+    program.start = JointVector::Constant(robot_->joints(), 0.1);
+    Step move;
+    move.what = PtpMove{JointTarget{JointVector::Constant(robot_->joints(), 0.4)}};
+    Step pause;
+    pause.what = Wait{wait};
+    program.steps = {move, pause};
+    return program;
+  }
+  /// Runs `program` and returns the exit code, as main() would.
+  int run(const MotionProgram& program) {
+    save_program(program, options_.program);
+    try {
+      return run_program(options_, out_);
+    } catch (const MotionError& error) {
+      message_ = error.problem().describe();
+      return exit_code_of(error);
+    }
+  }
+  [[nodiscard]] std::string written_log() const {
+    std::ifstream file(options_.log);
+    std::stringstream text;
+    text << file.rdbuf();
+    return text.str();
+  }
+
+  RobotPtr robot_ = RobotModel::make(load_description("two_link"));
+  fs::path folder_;
+  Options options_;
+  std::ostringstream out_;
+  std::string message_;
+};
+
+/// Drops what a run on a clock adds to a simulated one: stamps, times and measurements.
+std::vector<std::string> setpoints(const std::string& csv, int joints) {
+  std::vector<std::string> rows;
+  std::istringstream text(csv);
+  for (std::string line; std::getline(text, line);) {
+    std::istringstream fields(line);
+    std::string row, field;
+    for (int i = 0; std::getline(fields, field, ',') && i < 9 + 4 * joints; ++i) {
+      if (i < 1 || i > 3) row += field + ',';
+    }
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+TEST_F(RunProgram, GivesTheSetpointsOfTheInterpolatorToTheLastBit) {
+  ASSERT_EQ(run(program()), kFinished) << message_;
+  const Trajectory trajectory = MotionPlanner(robot_).plan(program()).trajectory;
+  const auto simulated = simulate(trajectory, robot_->limits(), {}, options_.cycle);
+  const auto expected = setpoints(log_to_csv(simulated), robot_->joints());
+  EXPECT_GT(expected.size(), 50U);
+  EXPECT_EQ(setpoints(written_log(), robot_->joints()), expected);
+  EXPECT_NE(out_.str().find("finished"), std::string::npos);
+}
+
+TEST_F(RunProgram, RefusesAProgramForAnotherRobotByBothNames) {
+  MotionProgram other = program();
+  other.robot = "three_link";
+  other.robot_fingerprint = "0123456789abcdef";
+  EXPECT_EQ(run(other), kUnreadable);
+  EXPECT_NE(message_.find("three_link"), std::string::npos) << message_;
+  EXPECT_NE(message_.find("two_link"), std::string::npos) << message_;
+  EXPECT_FALSE(fs::exists(options_.log));
+}
+
+TEST_F(RunProgram, RefusesWhatCannotBePlannedAndWritesNothing) {
+  MotionProgram far = program();
+  std::get<PtpMove>(far.steps[0].what).target = JointTarget{JointVector::Constant(2, 100.0)};
+  EXPECT_EQ(run(far), kRefused);
+  EXPECT_FALSE(message_.empty());
+  EXPECT_FALSE(fs::exists(options_.log));
+}
+
+TEST_F(RunProgram, TellsAFileThatIsNotThere) {
+  options_.robot = "no_such_robot";
+  EXPECT_EQ(run(program()), kUnreadable);
+  options_.robot = "two_link";
+  options_.program = (folder_ / "missing.json").string();
+  try {
+    static_cast<void>(run_program(options_, out_));
+    FAIL() << "nothing was refused";
+  } catch (const MotionError& error) {
+    EXPECT_EQ(exit_code_of(error), kUnreadable);
+  }
+}
+
+TEST_F(RunProgram, ASignalBringsTheArmToRestAndTheLogIsWritten) {
+  options_.virtual_time = false;
+  sigset_t terminate, before;
+  sigemptyset(&terminate);
+  sigaddset(&terminate, SIGTERM);
+  // As in the executable, where no other thread could take the signal either.
+  pthread_sigmask(SIG_BLOCK, &terminate, &before);
+  std::jthread sender([] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    kill(getpid(), SIGTERM);
+  });
+  EXPECT_EQ(run(program(600.0)), kStopped) << message_;
+  sender.join();
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  EXPECT_NE(written_log().find("stopped"), std::string::npos);
+  EXPECT_NE(out_.str().find("stopped"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace viapoint::controller
