@@ -17,7 +17,12 @@ namespace viapoint {
 /// @returns pieces from rest to rest with every share <= 1 + 1e-9, proven by certify(); each piece
 ///          lies within one path piece. Always succeeds for a valid path: its last resort is a
 ///          uniform stretch of time, which keeps the geometry.
-/// Real-time: not. Cost: linear in pieces.
+/// @throws MotionError(kBadArgument) for a path without pieces, of other joints than the limits, or
+///         with numbers that are not finite; (kZeroLength) where no joint moves; (kBadLimits)
+/// A straight section gets the exact seven phases. Any other is optimised over ṡ² along the path
+/// (Verscheure et al. 2009, with jerk by the convex-concave procedure) and ends within about two
+/// per cent of the quickest; where the optimiser does not beat the seven-phase move under bounds
+/// that hold all along the section, that move is returned. Real-time: not. Cost: linear in pieces.
 [[nodiscard]] std::vector<TrajectoryPiece> parameterize(const JointPath& path,
                                                         const JointLimits& limits);
 
