@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "path/bernstein.hpp"
+#include "path/quintic_extrema.hpp"
 
 namespace viapoint {
 namespace {

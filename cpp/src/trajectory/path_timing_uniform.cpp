@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "trajectory/path_timing_extrema.hpp"
+#include "viapoint/core/bernstein_bounds.hpp"
 #include "viapoint/core/error.hpp"
 #include "viapoint/profile/jerk_profile.hpp"
 

@@ -1,6 +1,6 @@
 /// @file
-/// Bounds of polynomials of low degree on [0, 1] from their Bernstein coefficients: the graph lies
-/// in their hull, and the first and last are reached (Lane & Riesenfeld 1981).
+/// Bounds of polynomials of fixed, low degree on [0, 1] from their Bernstein coefficients: the
+/// graph lies in their hull, and the first and last are reached (Lane & Riesenfeld 1981).
 #pragma once
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace viapoint::path_timing {
+namespace viapoint {
 
 /// Bernstein coefficients of Σ_k c_k x^k on [0, 1]: b_i = Σ_k C(i,k) / C(n,k) c_k (Farouki & Rajan
 /// 1988).
@@ -69,4 +69,4 @@ bool stays_above(std::array<double, Size> b, double floor, int depth = 12) {
   return stays_above(lower, floor, depth - 1) && stays_above(b, floor, depth - 1);
 }
 
-}  // namespace viapoint::path_timing
+}  // namespace viapoint

@@ -1,18 +1,14 @@
 /// @file
-/// Scalar quintics on [0, 1] in Bernstein form: the control values bound the polynomial, and
-/// halving (de Casteljau) tightens them quadratically (Lane & Riesenfeld 1981).
+/// Where a scalar quintic on [0, 1] exceeds a value, and by how much.
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
 #include <optional>
 
 namespace viapoint {
 
-using Quintic = std::array<double, 6>;    ///< coefficient of u^k
-using Bernstein = std::array<double, 6>;  ///< control values
+using Quintic = std::array<double, 6>;  ///< coefficient of u^k
 
-[[nodiscard]] Bernstein control_values(const Quintic& quintic);
 [[nodiscard]] double evaluate(const Quintic& quintic, double u);
 
 /// The first u in [0, 1] where the quintic exceeds zero, to rounding; nothing when it never does.
