@@ -104,11 +104,11 @@ def test_the_certificate_bounds_every_sample(motion):
 def test_sampling_does_not_loop_in_python(motion):
     import time
 
-    begin = time.perf_counter()
+    begin = time.process_time()
     count = len(motion.sample(1e-5))
-    seconds = time.perf_counter() - begin
+    seconds = time.process_time() - begin
     assert count > 1e5
-    assert seconds < 20e-6 * count  # a Python loop takes longer, even on a busy machine
+    assert seconds < 2e-6 * count  # a Python loop takes several times as long
 
 
 def test_simulate_follows_the_plan_at_full_rate(motion):
