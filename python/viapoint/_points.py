@@ -88,7 +88,7 @@ class PointList:
         name : str
             What to call it; a known name keeps its place in the order.
         q : array_like, (n,)
-            Joints [rad or m], within the robot's limits.
+            Joints [rad or m]. Limits are looked at when the list is played back.
 
         Raises
         ------
