@@ -48,6 +48,10 @@ void* operator new(std::size_t size) {
   if (void* block = std::malloc(size > 0 ? size : 1)) return block;
   throw std::bad_alloc();
 }
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+  note();
+  return std::malloc(size > 0 ? size : 1);
+}
 void operator delete(void* block) noexcept {
   if (block != nullptr) note();
   std::free(block);
