@@ -101,6 +101,6 @@ for row in zip(
     table.add_row(*row)
 console.print(table)
 console.print(
-    "Both pass the wrist singularity (joint 5 at 0): the joints are given there, so nothing happens.\n"
-    "A line with every orientation prescribed would turn joints 4 and 6 against each other at once."
+    "Both pass the wrist singularity (joint 5 at 0): the joints are given there, nothing happens.\n"
+    "A line with its orientation prescribed would turn joints 4 and 6 against each other at once."
 )
