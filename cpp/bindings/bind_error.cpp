@@ -1,5 +1,6 @@
 // Problems as data, and MotionError as one Python class a code (viapoint.errors).
 #include <exception>
+#include <utility>
 
 #include "bindings.hpp"
 
@@ -83,7 +84,7 @@ void bind_error(py::module_& m) {
   py::register_exception_translator([](std::exception_ptr pointer) {
     if (!pointer) return;
     try {
-      std::rethrow_exception(pointer);
+      std::rethrow_exception(std::move(pointer));
     } catch (const MotionError& error) {
       raise_in_python(error);
     }

@@ -13,29 +13,24 @@ namespace {
 using Vector = Eigen::VectorXd;
 using Release = py::gil_scoped_release;
 
-/// A loop that Python can close before the object itself goes.
+/// A loop that Python can close before the object itself goes. Shared, so that a thread that is
+/// inside a call while another one closes keeps it alive until it is out.
 struct LoopHandle {
-  std::unique_ptr<ControllerLoop> loop;
+  std::shared_ptr<ControllerLoop> loop;
   int joints = 0;
 
-  LoopHandle(std::unique_ptr<ControllerLoop> owned, int count)
-      : loop(std::move(owned)), joints(count) {}
-  LoopHandle(const LoopHandle&) = delete;
-  LoopHandle& operator=(const LoopHandle&) = delete;
-  ~LoopHandle() { close(); }
-
-  [[nodiscard]] ControllerLoop& open() const {
+  [[nodiscard]] std::shared_ptr<ControllerLoop> open() const {
     if (loop == nullptr) {
       throw MotionError(ErrorCode::kDriveFault, "The arm is no longer connected.",
                         {"Connect again: viapoint.connect(...)."});
     }
-    return *loop;
+    return loop;
   }
   /// A run under way is brought to rest first, which takes time: the GIL is not held meanwhile.
   void close() {
-    if (loop == nullptr) return;
+    std::shared_ptr<ControllerLoop> closing = std::move(loop);
     const Release release;
-    loop.reset();
+    closing.reset();
   }
 };
 
@@ -50,8 +45,8 @@ struct LogHandle {
   int joints = 0;
 };
 
-std::unique_ptr<LoopHandle> make_loop(const RobotHandle& robot, const Vector& start, double cycle,
-                                      int priority, bool lock_memory) {
+LoopHandle make_loop(const RobotHandle& robot, const Vector& start, double cycle, int priority,
+                     bool lock_memory) {
   if (!(cycle >= 1e-4) || !(cycle <= 1.0)) {
     throw MotionError(ErrorCode::kBadArgument,
                       "cycle is " + std::to_string(cycle) + " s; allowed are 0.0001 s to 1 s.");
@@ -63,10 +58,9 @@ std::unique_ptr<LoopHandle> make_loop(const RobotHandle& robot, const Vector& st
   options.priority = priority;
   options.lock_memory = lock_memory;
   const Release release;
-  return std::make_unique<LoopHandle>(
-      std::make_unique<ControllerLoop>(std::make_unique<SimulatedDrive>(q), robot.robot->limits(),
-                                       options),
-      joints);
+  return {std::make_shared<ControllerLoop>(std::make_unique<SimulatedDrive>(q),
+                                           robot.robot->limits(), options),
+          joints};
 }
 
 TimedCommand command_from(double time, const std::string& kind, double value) {
@@ -194,22 +188,22 @@ void bind_realtime(py::module_& m) {
       .def(
           "run",
           [](const LoopHandle& l, const MotionHandle& motion) {
-            ControllerLoop& loop = l.open();
+            const std::shared_ptr<ControllerLoop> loop = l.open();
             const Release release;
-            return JobHandle{loop.run(motion.trajectory), l.joints};
+            return JobHandle{loop->run(motion.trajectory), l.joints};
           },
           py::arg("motion"), py::keep_alive<0, 1>())
       .def_property(
-          "override", [](const LoopHandle& l) { return l.open().override_share(); },
-          [](const LoopHandle& l, double share) { l.open().set_override(share); })
+          "override", [](const LoopHandle& l) { return l.open()->override_share(); },
+          [](const LoopHandle& l, double share) { l.open()->set_override(share); })
       .def_property_readonly("measured",
-                             [](const LoopHandle& l) { return Vector(l.open().measured().q); })
+                             [](const LoopHandle& l) { return Vector(l.open()->measured().q); })
       .def_property_readonly("position",
-                             [](const LoopHandle& l) { return Vector(l.open().position()); })
-      .def_property_readonly("busy", [](const LoopHandle& l) { return l.open().busy(); })
+                             [](const LoopHandle& l) { return Vector(l.open()->position()); })
+      .def_property_readonly("busy", [](const LoopHandle& l) { return l.open()->busy(); })
       .def_property_readonly("is_open", [](const LoopHandle& l) { return l.loop != nullptr; })
       .def_property_readonly("shortcomings",
-                             [](const LoopHandle& l) { return l.open().shortcomings(); })
+                             [](const LoopHandle& l) { return l.open()->shortcomings(); })
       .def("close", &LoopHandle::close);
   m.def(
       "admit",
