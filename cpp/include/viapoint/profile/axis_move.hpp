@@ -1,0 +1,83 @@
+/// @file
+/// One axis from any position, velocity and acceleration to any other, within limits on velocity,
+/// acceleration and jerk that may differ by direction.
+#pragma once
+
+#include <array>
+#include <string_view>
+
+#include "viapoint/profile/jerk_profile.hpp"
+
+namespace viapoint {
+
+/// Limits of one axis; every minimum is negative, every maximum positive, all finite.
+struct AxisLimits {
+  double velocity_min = 0.0, velocity_max = 0.0;
+  double acceleration_min = 0.0, acceleration_max = 0.0;
+  double jerk_min = 0.0, jerk_max = 0.0;
+
+  /// The same limits in both directions.
+  [[nodiscard]] static constexpr AxisLimits symmetric(double velocity, double acceleration,
+                                                      double jerk) noexcept {
+    return {-velocity, velocity, -acceleration, acceleration, -jerk, jerk};
+  }
+};
+
+/// What came of a request.
+enum class MoveStatus : unsigned char {
+  kSolved,
+  kBadLimits,           ///< a minimum that is not negative, a maximum not positive, or not finite
+  kBadState,            ///< a start or an end that is not finite
+  kEndVelocity,         ///< the end velocity is outside its limits
+  kEndAcceleration,     ///< the end acceleration is outside its limits
+  kEndUnreachable,      ///< whatever arrives with that acceleration had a velocity outside before
+  kDurationImpossible,  ///< no motion within the limits lasts exactly that long
+  kNotParallel,         ///< the start or the end does not move along the straight line
+  kBadSize,             ///< no joints, more than kMaxJoints, or sizes that differ
+};
+
+/// The status in words, for messages. Real-time: safe.
+[[nodiscard]] std::string_view to_string(MoveStatus status) noexcept;
+
+/// Phases of constant jerk. Each begins from a state of its own, so that a long phase does not
+/// carry the rounding of the one before: at rest and on a limit the rates are exact.
+/// Real-time: safe. Threads: const methods.
+struct AxisMove {
+  /// Two to come back inside the limits, and the switching times of two motions merged.
+  static constexpr int kMaxPhases = 16;
+
+  struct Phase {
+    double duration;  ///< [s], > 0
+    AxisState from;   ///< qddd is the jerk of the phase
+  };
+
+  std::array<Phase, kMaxPhases> phase;  ///< `phases` of them hold values
+  int phases = 0;
+  AxisState end;       ///< the state aimed for, or the start where nothing moves
+  double total = 0.0;  ///< [s]
+
+  /// State at t, clamped to [0, total].
+  [[nodiscard]] AxisState at(double t) const noexcept;
+
+  /// Empties the motion and puts it at `start`.
+  void begin(const AxisState& start) noexcept;
+  /// Adds a phase from `end` on; none where `seconds` is zero or, by rounding, less.
+  /// @pre phases < kMaxPhases
+  void append(double jerk, double seconds) noexcept;
+};
+
+/// The quickest motion from `start` to `end` (q, qd, qdd of each; qddd is not read). A start
+/// outside the limits first comes back in: the acceleration at full jerk, then the velocity by the
+/// quickest motion whose acceleration vanishes on the limit.
+/// @return kSolved, or why there is no such motion; `move` is then left alone
+/// Real-time: safe. Threads: none shared.
+[[nodiscard]] MoveStatus quickest_move(const AxisState& start, const AxisState& end,
+                                       const AxisLimits& limits, AxisMove& move) noexcept;
+
+/// The quickest motion to the velocity and acceleration of `end`, wherever that is; end.q is not
+/// read. What a stop is made of. Otherwise as quickest_move.
+[[nodiscard]] MoveStatus quickest_velocity_change(const AxisState& start, const AxisState& end,
+                                                  const AxisLimits& limits,
+                                                  AxisMove& move) noexcept;
+
+}  // namespace viapoint

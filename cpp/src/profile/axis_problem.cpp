@@ -1,0 +1,290 @@
+#include "profile/axis_problem.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "profile/constant_jerk.hpp"
+
+namespace viapoint {
+namespace {
+
+/// Share of a limit that an end state may be over by rounding.
+constexpr double kEndSlack = 1e-12;
+/// Share of the way at hand within which two positions are the same but for rounding.
+constexpr double kWaySlack = 1e-14;
+/// What two positions lose when one is taken from the other.
+constexpr double kPositionRounding = 4e-16;
+/// As kWaySlack, for a duration that was solved for and comes back rounded.
+constexpr double kDurationSlack = 1e-13;
+
+bool is_sound(const AxisLimits& l) noexcept {
+  return l.velocity_min < 0.0 && l.velocity_max > 0.0 && l.acceleration_min < 0.0 &&
+         l.acceleration_max > 0.0 && l.jerk_min < 0.0 && l.jerk_max > 0.0 &&
+         std::isfinite(l.velocity_max - l.velocity_min) &&
+         std::isfinite(l.acceleration_max - l.acceleration_min) &&
+         std::isfinite(l.jerk_max - l.jerk_min);
+}
+
+bool is_finite(const AxisState& s) noexcept {
+  return std::isfinite(s.q) && std::isfinite(s.qd) && std::isfinite(s.qdd);
+}
+
+MoveStatus end_status(const AxisState& end, const AxisLimits& l) noexcept {
+  const double span = kEndSlack * (l.velocity_max - l.velocity_min);
+  if (!(end.qd <= l.velocity_max + span && end.qd >= l.velocity_min - span)) {
+    return MoveStatus::kEndVelocity;
+  }
+  const double band = kEndSlack * (l.acceleration_max - l.acceleration_min);
+  if (!(end.qdd <= l.acceleration_max + band && end.qdd >= l.acceleration_min - band)) {
+    return MoveStatus::kEndAcceleration;
+  }
+  const double jerk = end.qdd < 0.0 ? l.jerk_min : l.jerk_max;
+  const double before = end.qd - 0.5 * end.qdd * end.qdd / jerk;
+  if (!(before <= l.velocity_max + span && before >= l.velocity_min - span)) {
+    return MoveStatus::kEndUnreachable;
+  }
+  return MoveStatus::kSolved;
+}
+
+AxisState mirrored(const AxisState& s) noexcept { return {-s.q, -s.qd, -s.qdd, -s.qddd}; }
+
+AxisLimits mirrored(const AxisLimits& l) noexcept {
+  return {-l.velocity_max,     -l.velocity_min, -l.acceleration_max,
+          -l.acceleration_min, -l.jerk_max,     -l.jerk_min};
+}
+
+struct Brake {
+  double peak, jerk_time, hold;
+};
+
+/// The way back inside when the acceleration, brought to zero at once, leaves the velocity above
+/// its limit: down to −x, held if that is the limit, such that the rise from there to zero ends on
+/// the velocity limit: H x² + x·hold = v + a²/2j_down − v_max.
+Brake brake_down(const AxisState& s, const AxisLimits& l) noexcept {
+  const double half = 0.5 * (1.0 / l.jerk_max - 1.0 / l.jerk_min);
+  const double over = s.qd - 0.5 * s.qdd * s.qdd / l.jerk_min - l.velocity_max;
+  const double cap = -l.acceleration_min;
+  const double free = std::sqrt(std::max(0.0, over / half));
+  const double x = std::max(std::min(free, cap), -s.qdd);
+  const double hold = free > cap ? half * (free - cap) * (free + cap) / cap : 0.0;
+  return {x, (s.qdd + x) / -l.jerk_min, hold};
+}
+
+}  // namespace
+
+MoveStatus AxisProblem::set(const AxisState& start, const AxisState& end, const AxisLimits& limits,
+                            AxisMove& move) noexcept {
+  if (!is_sound(limits)) return MoveStatus::kBadLimits;
+  if (!is_finite(start) || !is_finite(end) || !std::isfinite(end.q - start.q))
+    return MoveStatus::kBadState;
+  const MoveStatus status = end_status(end, limits);
+  if (status != MoveStatus::kSolved) return status;
+
+  limits_ = limits;
+  has_up_ = has_down_ = false;
+  move.begin(start);
+
+  AxisState& now = move.end;
+  if (now.qdd > limits.acceleration_max) {
+    move.append(limits.jerk_min, (limits.acceleration_max - now.qdd) / limits.jerk_min);
+    now.qdd = limits.acceleration_max;
+  } else if (now.qdd < limits.acceleration_min) {
+    move.append(limits.jerk_max, (limits.acceleration_min - now.qdd) / limits.jerk_max);
+    now.qdd = limits.acceleration_min;
+  }
+  const double jerk = now.qdd > 0.0 ? limits.jerk_min : limits.jerk_max;
+  const double level = now.qd - 0.5 * now.qdd * now.qdd / jerk;  // once the acceleration is zero
+  if (level > limits.velocity_max) {
+    const Brake brake = brake_down(now, limits);
+    move.append(limits.jerk_min, brake.jerk_time);
+    now.qdd = -brake.peak;
+    move.append(0.0, brake.hold);
+  } else if (level < limits.velocity_min) {
+    const Brake brake = brake_down(mirrored(now), mirrored(limits));
+    move.append(limits.jerk_max, brake.jerk_time);
+    now.qdd = brake.peak;
+    move.append(0.0, brake.hold);
+  }
+  brake_time_ = move.total;
+  from_ = now;
+  target_q_ = end.q;
+  position_rounding_ = kPositionRounding * (std::abs(start.q) + std::abs(end.q));
+  to_ = {end.q - now.q, end.qd, end.qdd, 0.0};
+  return MoveStatus::kSolved;
+}
+
+void AxisProblem::build(bool upward) noexcept {
+  const AxisLimits& l = limits_;
+  if (upward && !has_up_) {
+    up_ = UpwardFamily(
+        from_.qd, from_.qdd, to_.qd, to_.qdd,
+        {l.velocity_max, l.acceleration_max, -l.acceleration_min, l.jerk_max, -l.jerk_min});
+    has_up_ = true;
+  } else if (!upward && !has_down_) {
+    down_ = UpwardFamily(
+        -from_.qd, -from_.qdd, -to_.qd, -to_.qdd,
+        {-l.velocity_min, -l.acceleration_min, l.acceleration_max, -l.jerk_min, l.jerk_max});
+    has_down_ = true;
+  }
+}
+
+void AxisProblem::append(bool upward, const UpwardMember& m, AxisMove& move) const noexcept {
+  const UpwardFamily& family = upward ? up_ : down_;
+  const double sign = upward ? 1.0 : -1.0;
+  const double rising = upward ? limits_.jerk_max : limits_.jerk_min;
+  const double falling = upward ? limits_.jerk_min : limits_.jerk_max;
+  const double per_up = 1.0 / std::abs(rising), per_down = 1.0 / std::abs(falling);
+  const double first = family.first_peak(m), last = family.last_peak(m);
+  // Where a value is known without integration, it takes the place of the integrated one.
+  move.append(rising, (first - sign * from_.qdd) * per_up);
+  move.end.qdd = sign * first;
+  move.append(0.0, family.first_hold(m));
+  if (m.cruise > 0.0) {
+    move.append(falling, first * per_down);
+    move.end.qdd = 0.0;
+    move.end.qd = sign * family.top();
+    move.append(0.0, m.cruise);
+    move.append(falling, last * per_down);
+  } else {
+    move.append(falling, (first + last) * per_down);
+  }
+  move.end.qdd = -sign * last;
+  move.append(0.0, family.last_hold(m));
+  move.append(rising, (last + sign * to_.qdd) * per_up);
+}
+
+void AxisProblem::append_velocity_change(AxisMove& move) noexcept {
+  build(true);
+  append(true, up_.quickest(), move);
+  move.end.qd = to_.qd;
+  move.end.qdd = to_.qdd;
+}
+
+double AxisProblem::solve_quickest() noexcept {
+  build(true);
+  const UpwardMember change = up_.quickest();
+  const double ends = (std::abs(from_.qd) + std::abs(to_.qd)) * change.duration;
+  const double near = kWaySlack * (std::abs(to_.q) + ends) + position_rounding_;
+  bool upward = true;
+  quickest_ = change;
+  if (std::abs(to_.q - change.gain) > near) {
+    upward = to_.q > change.gain;
+    build(upward);
+    const bool before_gap = upward ? up_.reach(to_.q, change, quickest_)
+                                   : down_.reach(-to_.q, down_.quickest(), quickest_);
+    if (!before_gap) {
+      upward = upward ? to_.q >= up_.after_gap().gain : to_.q > -down_.after_gap().gain;
+      build(upward);
+      quickest_ = upward ? up_.reach_after_gap(to_.q) : down_.reach_after_gap(-to_.q);
+    }
+  }
+  quickest_is_upward_ = upward;
+  return brake_time_ + quickest_.duration;
+}
+
+void AxisProblem::append_quickest(AxisMove& move) const noexcept {
+  append(quickest_is_upward_, quickest_, move);
+  move.end = {target_q_, to_.qd, to_.qdd, 0.0};
+}
+
+double AxisProblem::next_duration(double duration) noexcept {
+  build(true);
+  build(false);
+  double t = duration - brake_time_;
+  // Each round leaves one interval of impossible durations behind; there are at most three.
+  for (int round = 0; round < 4; ++round) {
+    if (up_.has_gap() && t > up_.gap_begin() && t < up_.gap_end()) t = up_.gap_end();
+    const UpwardMember most = up_.lasting(t), least = down_.lasting(t);
+    const double slack =
+        kDurationSlack * (std::abs(to_.q) + std::abs(most.gain) + std::abs(least.gain) +
+                          (std::abs(from_.qd) + std::abs(to_.qd)) * t);
+    UpwardMember found;
+    bool before_gap = true;
+    if (to_.q > most.gain + slack) {
+      before_gap = up_.reach(to_.q, most, found);
+    } else if (to_.q < -least.gain - slack) {
+      before_gap = down_.reach(-to_.q, least, found);
+    } else {
+      break;
+    }
+    t = std::max(t, before_gap ? found.duration : up_.gap_end());
+  }
+  return t > duration - brake_time_ ? brake_time_ + t : duration;
+}
+
+namespace {
+
+/// Lets the phases from `first` on follow one another to `target`. What is missing by rounding
+/// (two long ways that nearly cancel leave some) goes into the velocity of the longest, where it is
+/// rounding as well.
+void meet(double target, int first, AxisMove& move) noexcept {
+  const std::span<AxisMove::Phase> phases(move.phase.data() + first,
+                                          static_cast<size_t>(move.phases - first));
+  size_t longest = 0;
+  double q = phases.empty() ? target : phases[0].from.q;
+  for (size_t i = 0; i < phases.size(); ++i) {
+    phases[i].from.q = q;
+    q = advanced(phases[i].from, phases[i].from.qddd, phases[i].duration).q;
+    if (phases[i].duration > phases[longest].duration) longest = i;
+  }
+  if (phases.empty()) return;
+  phases[longest].from.qd += (target - q) / phases[longest].duration;
+  for (size_t i = longest + 1; i < phases.size(); ++i) phases[i].from.q += target - q;
+}
+
+}  // namespace
+
+void AxisProblem::append_lasting(double duration, AxisMove& move) noexcept {
+  build(true);
+  build(false);
+  const double t = duration - brake_time_;
+  const UpwardMember most = up_.lasting(t), least = down_.lasting(t);
+  const double room = most.gain + least.gain;
+  const double share = room > 0.0 ? (to_.q + least.gain) / room : 1.0;
+  if (share >= 1.0) {
+    append(true, most, move);
+  } else if (share <= 0.0) {
+    append(false, least, move);
+  } else {
+    const int first = move.phases;
+    append_blend(share, most, least, move);
+    meet(target_q_, first, move);
+  }
+  move.end = {target_q_, to_.qd, to_.qdd, 0.0};
+  move.total = duration;
+}
+
+/// share · most + (1 − share) · least, state by state.
+void AxisProblem::append_blend(double share, const UpwardMember& most, const UpwardMember& least,
+                               AxisMove& move) const noexcept {
+  AxisMove high, low;
+  high.begin(from_);
+  low.begin(from_);
+  append(true, most, high);
+  append(false, least, low);
+  const double rest = 1.0 - share;
+  int i = 0, k = 0;
+  double high_time = 0.0, low_time = 0.0;  // within the phase
+  while (i < high.phases && k < low.phases) {
+    const AxisMove::Phase& a = high.phase[static_cast<size_t>(i)];
+    const AxisMove::Phase& b = low.phase[static_cast<size_t>(k)];
+    const AxisState from = advanced(a.from, a.from.qddd, high_time);
+    const AxisState other = advanced(b.from, b.from.qddd, low_time);
+    const double high_left = a.duration - high_time, low_left = b.duration - low_time;
+    const double step = std::min(high_left, low_left);
+    const AxisState state{share * from.q + rest * other.q, share * from.qd + rest * other.qd,
+                          share * from.qdd + rest * other.qdd,
+                          share * a.from.qddd + rest * b.from.qddd};
+    if (step > 0.0) {
+      move.phase[static_cast<size_t>(move.phases++)] = {step, state};
+      move.total += step;
+    }
+    high_time = high_left <= low_left ? 0.0 : high_time + step;
+    low_time = low_left <= high_left ? 0.0 : low_time + step;
+    if (high_left <= low_left) ++i;
+    if (low_left <= high_left) ++k;
+  }
+}
+
+}  // namespace viapoint

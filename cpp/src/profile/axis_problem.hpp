@@ -1,0 +1,52 @@
+/// @file
+/// One axis' way from state to state: the quickest, those of a given duration, and which durations
+/// there are.
+///
+/// What is gained in a fixed time T is an interval [least(T), most(T)]: the limits are convex and
+/// the dynamics linear. `most` belongs to the upward family, `least` to the upward family of the
+/// mirrored axis, and what lies between to convex combinations of the two.
+#pragma once
+
+#include "profile/upward_family.hpp"
+#include "viapoint/profile/axis_move.hpp"
+
+namespace viapoint {
+
+class AxisProblem {
+ public:
+  /// Takes the problem in; the motion back inside the limits is appended to `move`, which starts
+  /// at `start`. Real-time: safe.
+  [[nodiscard]] MoveStatus set(const AxisState& start, const AxisState& end,
+                               const AxisLimits& limits, AxisMove& move) noexcept;
+
+  /// Solves for the quickest motion. @return its duration, counted from the start
+  double solve_quickest() noexcept;
+  /// The quickest motion, appended. @pre solve_quickest
+  void append_quickest(AxisMove& move) const noexcept;
+  /// The quickest motion to the end's velocity and acceleration, appended.
+  void append_velocity_change(AxisMove& move) noexcept;
+
+  /// The shortest duration not under `duration` that some motion has, counted from the start.
+  /// @pre `duration` not under that of the quickest
+  [[nodiscard]] double next_duration(double duration) noexcept;
+  /// A motion that lasts `duration`, appended. @pre next_duration returned it
+  void append_lasting(double duration, AxisMove& move) noexcept;
+
+ private:
+  void build(bool upward) noexcept;
+  void append(bool upward, const UpwardMember& member, AxisMove& move) const noexcept;
+  void append_blend(double share, const UpwardMember& most, const UpwardMember& least,
+                    AxisMove& move) const noexcept;
+
+  AxisLimits limits_;
+  AxisState from_, to_;  ///< inside the limits; to_.q counts from from_.q
+  double target_q_ = 0.0;
+  double position_rounding_ = 0.0;
+  double brake_time_ = 0.0;
+  UpwardFamily up_, down_;
+  bool has_up_ = false, has_down_ = false;
+  UpwardMember quickest_;
+  bool quickest_is_upward_ = true;
+};
+
+}  // namespace viapoint
