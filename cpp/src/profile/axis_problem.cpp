@@ -186,6 +186,7 @@ double AxisProblem::solve_quickest() noexcept {
 void AxisProblem::append_quickest(AxisMove& move) const noexcept {
   append(quickest_is_upward_, quickest_, move);
   move.end = {target_q_, to_.qd, to_.qdd, 0.0};
+  if (move.phases > 0) move.total = brake_time_ + quickest_.duration;
 }
 
 double AxisProblem::next_duration(double duration) noexcept {
@@ -221,14 +222,13 @@ namespace {
 void meet(double target, int first, AxisMove& move) noexcept {
   const std::span<AxisMove::Phase> phases(move.phase.data() + first,
                                           static_cast<size_t>(move.phases - first));
-  size_t longest = 0;
-  double q = phases.empty() ? target : phases[0].from.q;
+  size_t longest = 1;  // the first begins at the start, to the last bit
+  double q = phases[0].from.q;
   for (size_t i = 0; i < phases.size(); ++i) {
     phases[i].from.q = q;
     q = advanced(phases[i].from, phases[i].from.qddd, phases[i].duration).q;
-    if (phases[i].duration > phases[longest].duration) longest = i;
+    if (i > longest && phases[i].duration > phases[longest].duration) longest = i;
   }
-  if (phases.empty()) return;
   phases[longest].from.qd += (target - q) / phases[longest].duration;
   for (size_t i = longest + 1; i < phases.size(); ++i) phases[i].from.q += target - q;
 }
@@ -249,7 +249,7 @@ void AxisProblem::append_lasting(double duration, AxisMove& move) noexcept {
   } else {
     const int first = move.phases;
     append_blend(share, most, least, move);
-    meet(target_q_, first, move);
+    if (move.phases > first + 1) meet(target_q_, first, move);
   }
   move.end = {target_q_, to_.qd, to_.qdd, 0.0};
   move.total = duration;
@@ -273,9 +273,12 @@ void AxisProblem::append_blend(double share, const UpwardMember& most, const Upw
     const AxisState other = advanced(b.from, b.from.qddd, low_time);
     const double high_left = a.duration - high_time, low_left = b.duration - low_time;
     const double step = std::min(high_left, low_left);
-    const AxisState state{share * from.q + rest * other.q, share * from.qd + rest * other.qd,
-                          share * from.qdd + rest * other.qdd,
-                          share * a.from.qddd + rest * b.from.qddd};
+    AxisState state = from_;
+    if (i + k > 0) {
+      state = {share * from.q + rest * other.q, share * from.qd + rest * other.qd,
+               share * from.qdd + rest * other.qdd, 0.0};
+    }
+    state.qddd = share * a.from.qddd + rest * b.from.qddd;
     if (step > 0.0) {
       move.phase[static_cast<size_t>(move.phases++)] = {step, state};
       move.total += step;

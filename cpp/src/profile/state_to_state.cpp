@@ -1,0 +1,238 @@
+#include "viapoint/profile/state_to_state.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "profile/axis_problem.hpp"
+
+namespace viapoint {
+namespace {
+
+/// Share of a state by which it may leave the line through rounding.
+constexpr double kLineSlack = 1e-9;
+/// Share of a cycle by which a duration may be over a whole number of them.
+constexpr double kCycleSlack = 1e-9;
+
+/// The least duration both asked for and a whole number of cycles.
+double rounded_up(double duration, const StateToStateOptions& options) noexcept {
+  const double least = std::max(duration, options.least_duration);
+  if (!(options.cycle > 0.0)) return least;
+  const double cycles = least / options.cycle;
+  const double whole = std::round(cycles);
+  if (cycles <= whole + kCycleSlack) return std::max(whole * options.cycle, least);
+  return std::max(std::ceil(cycles) * options.cycle, least);
+}
+
+/// The least duration from `duration` on that is a whole number of cycles and that every axis has a
+/// motion of. Infinite where there is none within as many rounds as there can be intervals.
+double common_duration(std::span<AxisProblem> problems, double duration,
+                       const StateToStateOptions& options) noexcept {
+  double common = rounded_up(duration, options);
+  // Every axis has at most three intervals of durations it cannot have.
+  const size_t rounds = 3 * problems.size() + 1;
+  for (size_t round = 0; round < rounds; ++round) {
+    double next = common;
+    for (AxisProblem& problem : problems) next = std::max(next, problem.next_duration(next));
+    if (next == common) return common;
+    common = rounded_up(next, options);
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+bool is_sound(const StateToStateOptions& options) noexcept {
+  return std::isfinite(options.least_duration) && std::isfinite(options.cycle);
+}
+
+}  // namespace
+
+MoveStatus StateToState::plan(std::span<const AxisState> start, std::span<const AxisState> end,
+                              std::span<const AxisLimits> limits,
+                              const StateToStateOptions& options) noexcept {
+  joints_ = 0;
+  culprit_ = -1;
+  duration_ = 0.0;
+  const size_t n = start.size();
+  if (n < 1 || n > static_cast<size_t>(kMaxJoints) || end.size() != n || limits.size() != n) {
+    return MoveStatus::kBadSize;
+  }
+  if (!is_sound(options)) return MoveStatus::kDurationImpossible;
+  const MoveStatus status = options.synchronization == Synchronization::kLine
+                                ? plan_line(start, end, limits, options)
+                                : plan_apart(start, end, limits, options);
+  if (status != MoveStatus::kSolved) {
+    duration_ = 0.0;
+    return status;
+  }
+  joints_ = static_cast<int>(n);
+  return status;
+}
+
+MoveStatus StateToState::plan_apart(std::span<const AxisState> start,
+                                    std::span<const AxisState> end,
+                                    std::span<const AxisLimits> limits,
+                                    const StateToStateOptions& options) noexcept {
+  const size_t n = start.size();
+  std::array<AxisProblem, kMaxJoints> problems;
+  std::array<double, kMaxJoints> least{};
+  for (size_t i = 0; i < n; ++i) {
+    const MoveStatus status = problems[i].set(start[i], end[i], limits[i], axes_[i]);
+    if (status != MoveStatus::kSolved) {
+      culprit_ = static_cast<int>(i);
+      return status;
+    }
+    least[i] = problems[i].solve_quickest();
+  }
+  const bool together = options.synchronization == Synchronization::kTime;
+  if (together) {
+    const double longest = *std::max_element(least.begin(), least.begin() + static_cast<long>(n));
+    duration_ = common_duration({problems.data(), n}, longest, options);
+    if (!std::isfinite(duration_)) return MoveStatus::kDurationImpossible;
+  }
+  for (size_t i = 0; i < n; ++i) {
+    const double own = together ? duration_ : common_duration({&problems[i], 1}, least[i], options);
+    if (!std::isfinite(own)) return MoveStatus::kDurationImpossible;
+    if (own == least[i]) {
+      problems[i].append_quickest(axes_[i]);
+    } else {
+      problems[i].append_lasting(own, axes_[i]);
+    }
+    duration_ = std::max(duration_, own);
+  }
+  return MoveStatus::kSolved;
+}
+
+namespace {
+
+/// s(t) along a unit of the line, from the joint that moves farthest.
+struct Line {
+  std::array<double, kMaxJoints> direction{};
+  AxisState start, end;
+  AxisLimits limits;
+};
+
+/// The multiple of `direction` that `values` is; NaN where it is none within rounding.
+template <typename Read>
+double multiple_of(const std::array<double, kMaxJoints>& direction,
+                   std::span<const AxisState> states, Read read, size_t& culprit) noexcept {
+  double product = 0.0, square = 0.0, largest = 0.0;
+  for (size_t i = 0; i < states.size(); ++i) {
+    product += direction[i] * read(states[i]);
+    square += direction[i] * direction[i];
+    largest = std::max(largest, std::abs(read(states[i])));
+  }
+  const double factor = product / square;
+  for (size_t i = 0; i < states.size(); ++i) {
+    if (!(std::abs(read(states[i]) - factor * direction[i]) <= kLineSlack * largest)) {
+      culprit = i;
+      return std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+  return factor;
+}
+
+/// Tightens `low <= factor <= high` by minimum <= factor · direction <= maximum.
+void tighten(double direction, double minimum, double maximum, double& low, double& high) noexcept {
+  const double a = minimum / direction, b = maximum / direction;
+  low = std::max(low, std::min(a, b));
+  high = std::min(high, std::max(a, b));
+}
+
+}  // namespace
+
+MoveStatus StateToState::plan_line(std::span<const AxisState> start, std::span<const AxisState> end,
+                                   std::span<const AxisLimits> limits,
+                                   const StateToStateOptions& options) noexcept {
+  const size_t n = start.size();
+  Line line;
+  double largest = 0.0;
+  const auto take = [&](auto read) {
+    if (largest > 0.0) return;
+    for (size_t i = 0; i < n; ++i) {
+      line.direction[i] = read(i);
+      largest = std::max(largest, std::abs(line.direction[i]));
+    }
+  };
+  take([&](size_t i) { return end[i].q - start[i].q; });
+  take([&](size_t i) { return start[i].qd; });
+  take([&](size_t i) { return end[i].qd; });
+  take([&](size_t i) { return start[i].qdd; });
+  take([&](size_t i) { return end[i].qdd; });
+  if (!std::isfinite(largest)) return MoveStatus::kBadState;
+  if (largest == 0.0) return plan_apart(start, end, limits, options);
+  for (double& component : line.direction) component /= largest;
+
+  size_t culprit = 0;
+  const auto velocity = [](const AxisState& s) { return s.qd; };
+  const auto acceleration = [](const AxisState& s) { return s.qdd; };
+  line.start.qd = multiple_of(line.direction, start, velocity, culprit);
+  line.start.qdd = multiple_of(line.direction, start, acceleration, culprit);
+  line.end.qd = multiple_of(line.direction, end, velocity, culprit);
+  line.end.qdd = multiple_of(line.direction, end, acceleration, culprit);
+  size_t leader = 0;
+  for (size_t i = 0; i < n; ++i) {
+    if (std::abs(line.direction[i]) == 1.0) leader = i;
+  }
+  line.end.q = (end[leader].q - start[leader].q) / line.direction[leader];
+  for (const double value : {line.start.qd, line.start.qdd, line.end.qd, line.end.qdd}) {
+    if (!std::isnan(value)) continue;
+    culprit_ = static_cast<int>(culprit);
+    return MoveStatus::kNotParallel;
+  }
+
+  const double none = std::numeric_limits<double>::infinity();
+  line.limits = {-none, none, -none, none, -none, none};
+  for (size_t i = 0; i < n; ++i) {
+    const AxisLimits& l = limits[i];
+    const double d = line.direction[i];
+    if (d == 0.0) continue;
+    tighten(d, l.velocity_min, l.velocity_max, line.limits.velocity_min, line.limits.velocity_max);
+    tighten(d, l.acceleration_min, l.acceleration_max, line.limits.acceleration_min,
+            line.limits.acceleration_max);
+    tighten(d, l.jerk_min, l.jerk_max, line.limits.jerk_min, line.limits.jerk_max);
+  }
+
+  AxisMove law;
+  AxisProblem problem;
+  const MoveStatus status = problem.set(line.start, line.end, line.limits, law);
+  if (status != MoveStatus::kSolved) {
+    culprit_ = static_cast<int>(leader);
+    return status;
+  }
+  const double quickest = problem.solve_quickest();
+  duration_ = common_duration({&problem, 1}, quickest, options);
+  if (!std::isfinite(duration_)) return MoveStatus::kDurationImpossible;
+  if (duration_ == quickest) {
+    problem.append_quickest(law);
+  } else {
+    problem.append_lasting(duration_, law);
+  }
+  for (size_t i = 0; i < n; ++i) {
+    const double d = line.direction[i];
+    const auto scaled = [&](const AxisState& s) {
+      return AxisState{start[i].q + d * s.q, d * s.qd, d * s.qdd, d * s.qddd};
+    };
+    AxisMove& move = axes_[i];
+    move.phases = law.phases;
+    move.total = law.total;
+    for (size_t k = 0; k < static_cast<size_t>(law.phases); ++k) {
+      move.phase[k] = {law.phase[k].duration, scaled(law.phase[k].from)};
+    }
+    move.end = {end[i].q, end[i].qd, end[i].qdd, 0.0};
+  }
+  return MoveStatus::kSolved;
+}
+
+JointState StateToState::at(double t) const noexcept {
+  JointState state = JointState::zero(joints_);
+  for (int i = 0; i < joints_; ++i) {
+    const AxisState s = axis(i).at(t);
+    state.q[i] = s.q;
+    state.qd[i] = s.qd;
+    state.qdd[i] = s.qdd;
+    state.qddd[i] = s.qddd;
+  }
+  return state;
+}
+
+}  // namespace viapoint
