@@ -83,6 +83,7 @@ MoveStatus AxisProblem::set(const AxisState& start, const AxisState& end, const 
 
   limits_ = limits;
   has_up_ = has_down_ = false;
+  lasting_ = -1.0;
   move.begin(start);
 
   AxisState& now = move.end;
@@ -129,34 +130,48 @@ void AxisProblem::build(bool upward) noexcept {
   }
 }
 
-void AxisProblem::append(bool upward, const UpwardMember& m, AxisMove& move) const noexcept {
+void AxisProblem::Chain::add(double jerk, double qdd, double duration) noexcept {
+  if (!(duration > 0.0)) return;
+  links[static_cast<size_t>(size++)] = {duration, jerk, qdd};
+}
+
+AxisProblem::Chain AxisProblem::chain_of(bool upward, const UpwardMember& m) const noexcept {
   const UpwardFamily& family = upward ? up_ : down_;
   const double sign = upward ? 1.0 : -1.0;
   const double rising = upward ? limits_.jerk_max : limits_.jerk_min;
   const double falling = upward ? limits_.jerk_min : limits_.jerk_max;
-  const double per_up = 1.0 / std::abs(rising), per_down = 1.0 / std::abs(falling);
+  const double per_up = sign / rising, per_down = -sign / falling;
   const double first = family.first_peak(m), last = family.last_peak(m);
-  // Where a value is known without integration, it takes the place of the integrated one.
-  move.append(rising, (first - sign * from_.qdd) * per_up);
-  move.end.qdd = sign * first;
-  move.append(0.0, family.first_hold(m));
+  Chain chain;
+  chain.add(rising, from_.qdd, (first - sign * from_.qdd) * per_up);
+  chain.add(0.0, sign * first, family.first_hold(m));
   if (m.cruise > 0.0) {
-    move.append(falling, first * per_down);
-    move.end.qdd = 0.0;
-    move.end.qd = sign * family.top();
-    move.append(0.0, m.cruise);
-    move.append(falling, last * per_down);
+    chain.add(falling, sign * first, first * per_down);
+    chain.cruise = chain.size;
+    chain.top = sign * family.top();
+    chain.add(0.0, 0.0, m.cruise);
+    chain.add(falling, 0.0, last * per_down);
   } else {
-    move.append(falling, (first + last) * per_down);
+    chain.add(falling, sign * first, (first + last) * per_down);
   }
-  move.end.qdd = -sign * last;
-  move.append(0.0, family.last_hold(m));
-  move.append(rising, (last + sign * to_.qdd) * per_up);
+  chain.add(0.0, -sign * last, family.last_hold(m));
+  chain.add(rising, -sign * last, (last + sign * to_.qdd) * per_up);
+  return chain;
+}
+
+/// What is known without integration takes the place of the integrated.
+void AxisProblem::append(const Chain& chain, AxisMove& move) noexcept {
+  for (int i = 0; i < chain.size; ++i) {
+    const auto& [duration, jerk, qdd] = chain.links[static_cast<size_t>(i)];
+    if (i > 0) move.end.qdd = qdd;
+    if (i == chain.cruise) move.end.qd = chain.top;
+    move.append(jerk, duration);
+  }
 }
 
 void AxisProblem::append_velocity_change(AxisMove& move) noexcept {
   build(true);
-  append(true, up_.quickest(), move);
+  append(chain_of(true, up_.quickest()), move);
   move.end.qd = to_.qd;
   move.end.qdd = to_.qdd;
 }
@@ -184,28 +199,45 @@ double AxisProblem::solve_quickest() noexcept {
 }
 
 void AxisProblem::append_quickest(AxisMove& move) const noexcept {
-  append(quickest_is_upward_, quickest_, move);
+  append(chain_of(quickest_is_upward_, quickest_), move);
   move.end = {target_q_, to_.qd, to_.qdd, 0.0};
   if (move.phases > 0) move.total = brake_time_ + quickest_.duration;
 }
 
-double AxisProblem::next_duration(double duration) noexcept {
+bool AxisProblem::is_rest_to_rest() const noexcept {
+  return brake_time_ == 0.0 && from_.qd == 0.0 && from_.qdd == 0.0 && to_.qd == 0.0 &&
+         to_.qdd == 0.0;
+}
+
+void AxisProblem::solve_lasting(double t) noexcept {
+  if (lasting_ == t) return;
   build(true);
   build(false);
+  most_ = up_.lasting(t);
+  least_ = down_.lasting(t);
+  lasting_ = t;
+}
+
+double AxisProblem::next_duration(double duration) noexcept {
+  if (is_rest_to_rest()) return duration;  // it can be slowed down to any
+  if (duration == brake_time_ + quickest_.duration) return duration;
   double t = duration - brake_time_;
   // Each round leaves one interval of impossible durations behind; there are at most three.
   for (int round = 0; round < 4; ++round) {
-    if (up_.has_gap() && t > up_.gap_begin() && t < up_.gap_end()) t = up_.gap_end();
-    const UpwardMember most = up_.lasting(t), least = down_.lasting(t);
+    solve_lasting(t);
+    if (up_.has_gap() && t > up_.gap_begin() && t < up_.gap_end()) {
+      t = up_.gap_end();
+      solve_lasting(t);
+    }
     const double slack =
-        kDurationSlack * (std::abs(to_.q) + std::abs(most.gain) + std::abs(least.gain) +
+        kDurationSlack * (std::abs(to_.q) + std::abs(most_.gain) + std::abs(least_.gain) +
                           (std::abs(from_.qd) + std::abs(to_.qd)) * t);
-    UpwardMember found;
+    UpwardMember found{};
     bool before_gap = true;
-    if (to_.q > most.gain + slack) {
-      before_gap = up_.reach(to_.q, most, found);
-    } else if (to_.q < -least.gain - slack) {
-      before_gap = down_.reach(-to_.q, least, found);
+    if (to_.q > most_.gain + slack) {
+      before_gap = up_.reach(to_.q, most_, found);
+    } else if (to_.q < -least_.gain - slack) {
+      before_gap = down_.reach(-to_.q, least_, found);
     } else {
       break;
     }
@@ -236,57 +268,79 @@ void meet(double target, int first, AxisMove& move) noexcept {
 }  // namespace
 
 void AxisProblem::append_lasting(double duration, AxisMove& move) noexcept {
-  build(true);
-  build(false);
-  const double t = duration - brake_time_;
-  const UpwardMember most = up_.lasting(t), least = down_.lasting(t);
-  const double room = most.gain + least.gain;
-  const double share = room > 0.0 ? (to_.q + least.gain) / room : 1.0;
+  if (is_rest_to_rest()) {
+    append_slowed(duration, move);
+    return;
+  }
+  solve_lasting(duration - brake_time_);
+  const double room = most_.gain + least_.gain;
+  const double share = room > 0.0 ? (to_.q + least_.gain) / room : 1.0;
   if (share >= 1.0) {
-    append(true, most, move);
+    append(chain_of(true, most_), move);
   } else if (share <= 0.0) {
-    append(false, least, move);
+    append(chain_of(false, least_), move);
   } else {
     const int first = move.phases;
-    append_blend(share, most, least, move);
+    append_blend(share, chain_of(true, most_), chain_of(false, least_), move);
     if (move.phases > first + 1) meet(target_q_, first, move);
   }
   move.end = {target_q_, to_.qd, to_.qdd, 0.0};
   move.total = duration;
 }
 
+/// The quickest motion in slow motion: lower rates only.
+void AxisProblem::append_slowed(double duration, AxisMove& move) const noexcept {
+  append_quickest(move);
+  if (move.phases == 0) move.append(0.0, duration);
+  const double rate = quickest_.duration / duration;
+  for (int i = 0; i < move.phases; ++i) {
+    auto& [seconds, from] = move.phase[static_cast<size_t>(i)];
+    if (quickest_.duration > 0.0) seconds /= rate;
+    from.qd *= rate;
+    from.qdd *= rate * rate;
+    from.qddd *= rate * rate * rate;
+  }
+  move.end = {target_q_, 0.0, 0.0, 0.0};
+  move.total = duration;
+}
+
 /// share · most + (1 − share) · least, state by state.
-void AxisProblem::append_blend(double share, const UpwardMember& most, const UpwardMember& least,
+void AxisProblem::append_blend(double share, const Chain& most, const Chain& least,
                                AxisMove& move) const noexcept {
-  AxisMove high, low;
-  high.begin(from_);
-  low.begin(from_);
-  append(true, most, high);
-  append(false, least, low);
   const double rest = 1.0 - share;
+  AxisState high = from_, low = from_, now = from_;
   int i = 0, k = 0;
-  double high_time = 0.0, low_time = 0.0;  // within the phase
-  while (i < high.phases && k < low.phases) {
-    const AxisMove::Phase& a = high.phase[static_cast<size_t>(i)];
-    const AxisMove::Phase& b = low.phase[static_cast<size_t>(k)];
-    const AxisState from = advanced(a.from, a.from.qddd, high_time);
-    const AxisState other = advanced(b.from, b.from.qddd, low_time);
-    const double high_left = a.duration - high_time, low_left = b.duration - low_time;
+  const auto enter = [](const Chain& chain, int index, AxisState& state) {
+    const Chain::Link& link = chain.links[static_cast<size_t>(index)];
+    if (index > 0) state.qdd = link.qdd;
+    if (index == chain.cruise) state.qd = chain.top;
+    return link.duration;
+  };
+  if (most.size == 0 || least.size == 0) return;
+  double high_left = enter(most, 0, high), low_left = enter(least, 0, low);
+  for (;;) {
+    const double high_jerk = most.links[static_cast<size_t>(i)].jerk;
+    const double low_jerk = least.links[static_cast<size_t>(k)].jerk;
     const double step = std::min(high_left, low_left);
-    AxisState state = from_;
-    if (i + k > 0) {
-      state = {share * from.q + rest * other.q, share * from.qd + rest * other.qd,
-               share * from.qdd + rest * other.qdd, 0.0};
-    }
-    state.qddd = share * a.from.qddd + rest * b.from.qddd;
     if (step > 0.0) {
-      move.phase[static_cast<size_t>(move.phases++)] = {step, state};
+      now.qddd = share * high_jerk + rest * low_jerk;
+      move.phase[static_cast<size_t>(move.phases++)] = {step, now};
       move.total += step;
+      high = advanced(high, high_jerk, step);
+      low = advanced(low, low_jerk, step);
     }
-    high_time = high_left <= low_left ? 0.0 : high_time + step;
-    low_time = low_left <= high_left ? 0.0 : low_time + step;
-    if (high_left <= low_left) ++i;
-    if (low_left <= high_left) ++k;
+    high_left -= step;
+    low_left -= step;
+    if (high_left <= 0.0) {
+      if (++i == most.size) break;
+      high_left = enter(most, i, high);
+    }
+    if (low_left <= 0.0) {
+      if (++k == least.size) break;
+      low_left = enter(least, k, low);
+    }
+    now = {share * high.q + rest * low.q, share * high.qd + rest * low.qd,
+           share * high.qdd + rest * low.qdd, 0.0};
   }
 }
 

@@ -7,6 +7,8 @@
 /// mirrored axis, and what lies between to convex combinations of the two.
 #pragma once
 
+#include <array>
+
 #include "profile/upward_family.hpp"
 #include "viapoint/profile/axis_move.hpp"
 
@@ -33,20 +35,39 @@ class AxisProblem {
   void append_lasting(double duration, AxisMove& move) noexcept;
 
  private:
+  /// Phases of one member; accelerations at their starts are known without integration.
+  struct Chain {
+    struct Link {
+      double duration, jerk, qdd;
+    };
+    std::array<Link, 7> links;
+    int size = 0;
+    double top = 0.0;  ///< velocity of a cruise
+    int cruise = -1;   ///< its index
+
+    void add(double jerk, double qdd, double duration) noexcept;
+  };
+
   void build(bool upward) noexcept;
-  void append(bool upward, const UpwardMember& member, AxisMove& move) const noexcept;
-  void append_blend(double share, const UpwardMember& most, const UpwardMember& least,
+  [[nodiscard]] Chain chain_of(bool upward, const UpwardMember& member) const noexcept;
+  static void append(const Chain& chain, AxisMove& move) noexcept;
+  void append_blend(double share, const Chain& most, const Chain& least,
                     AxisMove& move) const noexcept;
+  void append_slowed(double duration, AxisMove& move) const noexcept;
+  [[nodiscard]] bool is_rest_to_rest() const noexcept;
+  void solve_lasting(double t) noexcept;
 
   AxisLimits limits_;
   AxisState from_, to_;  ///< inside the limits; to_.q counts from from_.q
-  double target_q_ = 0.0;
-  double position_rounding_ = 0.0;
-  double brake_time_ = 0.0;
+  double target_q_;
+  double position_rounding_;
+  double brake_time_;
   UpwardFamily up_, down_;
-  bool has_up_ = false, has_down_ = false;
+  bool has_up_, has_down_;
   UpwardMember quickest_;
-  bool quickest_is_upward_ = true;
+  bool quickest_is_upward_;
+  double lasting_;  ///< the duration, after the brake, that most_ and least_ last
+  UpwardMember most_, least_;
 };
 
 }  // namespace viapoint

@@ -51,10 +51,15 @@ UpwardFamily::UpwardFamily(double v0, double a0, double v1, double a1,
     k_ = 0.0;
   }
   time_offset_ = (a1 - a0) * per_up_;
+  gain_offset_ = 0.0;
   for (const Side& side : {outer_, inner_}) {
     const double lead = side.lead * per_up_;
     gain_offset_ -= lead * (side.v + square(side.lead) * per_up_ / 6.0);
   }
+
+  has_monotone_ = has_gap_ = false;
+  monotone_end_ = gap_begin_ = 0.0;
+  crest_start_ = {};
 
   // The lowest top, counted from inner_.v: the higher of what the two sides need.
   const double outer_least = square(std::max(outer_.lead, 0.0)) - k_;
@@ -105,7 +110,7 @@ void UpwardFamily::settle(UpwardMember& m) const noexcept {
 }
 
 UpwardMember UpwardFamily::of_inner(double inner) const noexcept {
-  UpwardMember m;
+  UpwardMember m{};
   m.inner = inner;
   m.outer = std::sqrt(k_ + inner * inner);
   settle(m);
@@ -113,7 +118,7 @@ UpwardMember UpwardFamily::of_inner(double inner) const noexcept {
 }
 
 UpwardMember UpwardFamily::of_sum(double sum) const noexcept {
-  UpwardMember m;
+  UpwardMember m{};
   const double difference = sum > 0.0 ? k_ / sum : 0.0;
   m.outer = 0.5 * (sum + difference);
   m.inner = 0.5 * (sum - difference);
@@ -123,7 +128,7 @@ UpwardMember UpwardFamily::of_sum(double sum) const noexcept {
 
 UpwardMember UpwardFamily::of_excess(double excess) const noexcept {
   const double squared = std::max(0.0, excess) / half_;
-  UpwardMember m;
+  UpwardMember m{};
   m.inner = std::sqrt(squared);
   m.outer = std::sqrt(k_ + squared);
   settle(m);

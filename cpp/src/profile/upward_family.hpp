@@ -34,10 +34,10 @@ struct UpwardLimits {
 
 /// One motion of the family.
 struct UpwardMember {
-  double outer = 0.0, inner = 0.0;            ///< peaks of the two sides, as above
-  double outer_hold = 0.0, inner_hold = 0.0;  ///< time at the acceleration limits [s]
-  double cruise = 0.0;                        ///< time at the velocity limit [s]
-  double duration = 0.0, gain = 0.0;
+  double outer, inner;            ///< peaks of the two sides, as above
+  double outer_hold, inner_hold;  ///< time at the acceleration limits [s]
+  double cruise;                  ///< time at the velocity limit [s]
+  double duration, gain;
 };
 
 /// The family between (v0, a0) and (v1, a1). Real-time: safe. Threads: const after construction.
@@ -88,9 +88,9 @@ class UpwardFamily {
 
  private:
   struct Side {
-    double v = 0.0;     ///< velocity where the line through the given state crosses a = 0
-    double lead = 0.0;  ///< the peak cannot be lower than the given acceleration
-    double cap = 0.0;   ///< nor higher than this
+    double v;     ///< velocity where the line through the given state crosses a = 0
+    double lead;  ///< the peak cannot be lower than the given acceleration
+    double cap;   ///< nor higher than this
   };
 
   [[nodiscard]] UpwardMember of_inner(double inner) const noexcept;
@@ -109,17 +109,18 @@ class UpwardFamily {
                                               double low_excess, double high_excess) const noexcept;
   void settle(UpwardMember& m) const noexcept;
 
+  // Not initialised by default: many wait in arrays for few that are used.
   Side outer_, inner_;
-  bool first_is_outer_ = true, has_monotone_ = false, has_gap_ = false;
-  double per_up_ = 0.0, per_down_ = 0.0;  ///< 1/jerk
-  double half_ = 0.0;                     ///< H
-  double cubic_ = 0.0;                    ///< a side gains v·2Hx + cubic x³
-  double k_ = 0.0;
-  double time_offset_ = 0.0, gain_offset_ = 0.0;
-  double top_ = 0.0;                     ///< the velocity limit
-  double lowest_ = 0.0, highest_ = 0.0;  ///< excesses of the first member after the gap, the last
-  double monotone_end_ = 0.0;            ///< greatest inner peak before the gap
-  double gap_begin_ = 0.0;
+  bool first_is_outer_, has_monotone_, has_gap_;
+  double per_up_, per_down_;  ///< 1/jerk
+  double half_;               ///< H
+  double cubic_;              ///< a side gains v·2Hx + cubic x³
+  double k_;
+  double time_offset_, gain_offset_;
+  double top_;               ///< the velocity limit
+  double lowest_, highest_;  ///< excesses of the first member after the gap, the last
+  double monotone_end_;      ///< greatest inner peak before the gap
+  double gap_begin_;
   UpwardMember crest_start_;  ///< the first member with inner peak >= 0
 };
 
