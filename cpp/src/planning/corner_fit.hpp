@@ -13,9 +13,4 @@ namespace viapoint::planning {
 [[nodiscard]] Corner fit_corner(const RobotModel& robot, const JointPath& before, const Leg& after,
                                 const MoveOptions& options, double room_before, double room_after);
 
-/// Ceilings on the blend's rate so that the tool keeps the speed and acceleration asked for by
-/// either leg.
-void limit_tool(const RobotModel& robot, JointPiece& blend, const MoveOptions& before,
-                const MoveOptions& after);
-
 }  // namespace viapoint::planning

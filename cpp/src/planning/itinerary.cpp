@@ -106,7 +106,7 @@ class Walk {
         return;
       }
       Leg leg = build_leg();
-      apply_options(leg, options, step_);
+      builder_.apply(leg, options, step_);
       at_ = leg.goal;
       outputs_here_ = 0;
       itinerary_.items.emplace_back(std::move(leg));

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <optional>
 
+#include "planning/tool_limits.hpp"
 #include "viapoint/core/units.hpp"
 #include "viapoint/kinematics/inverse_kinematics.hpp"
 #include "viapoint/path/insertion.hpp"
@@ -237,18 +237,14 @@ Leg LegBuilder::lin_by_wrist(const Target& target, const JointVector& start) con
   throw *first;
 }
 
-void apply_options(Leg& leg, const MoveOptions& options, int step) {
+void LegBuilder::apply(Leg& leg, const MoveOptions& options, int step) const {
   leg.step = step;
   leg.options = options;
   JointPath path;
   for (JointPiece piece : leg.path.pieces()) {
     piece.move = step;
     piece.scale = options.scale.value_or(1.0);
-    if (leg.cartesian) {
-      constexpr double kNoLimit = std::numeric_limits<double>::infinity();
-      piece.rate_limit = options.speed.value_or(kNoLimit);
-      piece.rate_change_limit = options.acceleration.value_or(kNoLimit);
-    }
+    if (leg.cartesian) limit_tool(robot_, piece, {options.speed, options.acceleration});
     path.append(std::move(piece));
   }
   leg.path = std::move(path);

@@ -28,6 +28,9 @@ class LegBuilder {
   [[nodiscard]] Leg ptp(const PtpMove& move, const JointVector& start) const;
   [[nodiscard]] Leg lin(const LinMove& move, const JointVector& start) const;
 
+  /// Puts the wishes of a step on every piece of its leg.
+  void apply(Leg& leg, const MoveOptions& options, int step) const;
+
  private:
   [[nodiscard]] Leg follow(const TaskCurve& curve, const JointVector& start,
                            const InsertionOptions& how) const;
@@ -38,8 +41,5 @@ class LegBuilder {
   const RobotModel& robot_;
   const PlannerOptions& options_;
 };
-
-/// Puts the wishes of a step on every piece of its leg.
-void apply_options(Leg& leg, const MoveOptions& options, int step);
 
 }  // namespace viapoint::planning

@@ -220,7 +220,7 @@ TEST_F(PumaPlanner, KeepsToolSpeedAndScale) {
       }
     }
   }
-  EXPECT_LE(fastest, 0.1 * (1 + 1e-3));  // the tool follows its line to 0.05 mm, not exactly
+  EXPECT_LE(fastest, 0.1 * (1 + 1e-9));
   EXPECT_GT(fastest, 0.099);
 }
 

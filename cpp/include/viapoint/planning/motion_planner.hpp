@@ -16,10 +16,10 @@ namespace viapoint {
 struct CornerOutcome {
   int move = 0;
   Zone asked;
-  bool stopped = false;    ///< the arm stops at the point
-  double used = 0.0;       ///< size really used, in the zone's own unit
-  double cut = 0.0;        ///< proven largest distance of the tool from its legs [m]
-  std::string reason;      ///< why shrunk or stopped; empty where used as asked
+  bool stopped = false;  ///< the arm stops at the point
+  double used = 0.0;     ///< size really used, in the zone's own unit
+  double cut = 0.0;      ///< proven largest distance of the tool from its legs [m]
+  std::string reason;    ///< why shrunk or stopped; empty where used as asked
 };
 
 /// All problems of a program at once, in program order.
