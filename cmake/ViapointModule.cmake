@@ -38,5 +38,5 @@ function(viapoint_test name)
   target_compile_options(test_${name} PRIVATE "SHELL:-include ${paths}")
   target_link_libraries(test_${name} PRIVATE
     ${arg_LINKS} ${arg_PRIVATE} viapoint_compiler GTest::gtest_main)
-  gtest_discover_tests(test_${name} DISCOVERY_TIMEOUT 60)
+  gtest_discover_tests(test_${name} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS ${name})
 endfunction()

@@ -8,7 +8,10 @@ import xml.etree.ElementTree as ET
 from dataclasses import dataclass
 from pathlib import Path
 
+from affected_tests import Passed, executables, python_files, test_data
+
 ROOT = Path(__file__).parents[1]
+REPORTS = Path("build/reports")
 
 
 @dataclass(frozen=True)
@@ -78,6 +81,43 @@ def run(title: str, command: list[str], report: Path, environment: dict[str, str
     return counts
 
 
+def run_googletest(options: argparse.Namespace, passed: Passed) -> Counts:
+    """Run GoogleTest through ctest; executables that passed as they are may be left out."""
+    report = ROOT / REPORTS / "ctest.xml"
+    tree = ROOT / options.tree
+    command = ["ctest", "--test-dir", str(tree), "--output-on-failure", "--no-tests=ignore"]
+    command += ["--progress", "--parallel", str(os.cpu_count() or 1)]
+    command += ["--output-junit", str(report)]
+    command += ["-R", options.k] if options.k else []
+    programs = {name: [path, *test_data(ROOT)] for name, path in executables(tree).items()}
+    if options.affected:
+        done = sorted(name for name, files in programs.items() if passed.holds(name, files))
+        print(f"Unchanged since they passed: {', '.join(done) or 'none'}", flush=True)
+        command += ["-LE", f"^({'|'.join(done)})$"] if done else []
+    counts = run("GoogleTest", command, report, dict(os.environ))
+    if counts.failed == 0 and not options.k:
+        for name, files in programs.items():
+            passed.record(name, files)
+    return counts
+
+
+def run_pytest(options: argparse.Namespace, passed: Passed) -> Counts:
+    """Run pytest; it may be left out when nothing of Python changed since it passed."""
+    files = python_files(ROOT)
+    if options.affected and passed.holds("pytest", files):
+        print("Nothing of Python changed since pytest passed", flush=True)
+        return Counts()
+    report = ROOT / REPORTS / "pytest.xml"
+    command = [sys.executable, "-m", "pytest", "-q", f"--junitxml={report}"]
+    command += ["-k", options.k] if options.k else []
+    command += options.pytest_arguments
+    # Pictures are drawn without a screen.
+    counts = run("pytest", command, report, os.environ | {"MPLBACKEND": "Agg"})
+    if counts.failed == 0 and not options.k and not options.pytest_arguments:
+        passed.record("pytest", files)
+    return counts
+
+
 def parse(arguments: list[str]) -> argparse.Namespace:
     """Read the command line."""
     parser = argparse.ArgumentParser(
@@ -85,6 +125,12 @@ def parse(arguments: list[str]) -> argparse.Namespace:
         description="Set up what is missing, build, run GoogleTest and pytest, and sum them.",
     )
     parser.add_argument("-k", metavar="NAME", help="only tests whose name contains NAME")
+    parser.add_argument(
+        "--affected",
+        action="store_true",
+        help="leave out GoogleTest executables that passed as they are, and pytest when it passed "
+        "and nothing of Python changed since (a change of C++ alone does not count)",
+    )
     parser.add_argument("--cpp", action="store_true", help="only GoogleTest")
     parser.add_argument("--python", action="store_true", help="only pytest")
     parser.add_argument("--tree", default="build/release", help="build tree (default: %(default)s)")
@@ -95,31 +141,21 @@ def parse(arguments: list[str]) -> argparse.Namespace:
 
 
 def main(arguments: list[str]) -> int:
-    """Run what was asked for; 0 when at least one test ran and none failed."""
+    """Run what was asked for; 0 when none failed and, unless only ``--affected``, one ran."""
     options = parse(arguments)
     both = options.cpp == options.python
-    reports = ROOT / "build" / "reports"
-    reports.mkdir(parents=True, exist_ok=True)
-    # Pictures are drawn without a screen.
-    environment = os.environ | {"MPLBACKEND": "Agg"}
+    (ROOT / REPORTS).mkdir(parents=True, exist_ok=True)
+    passed = Passed(ROOT / REPORTS / "passed.json")
     counts = Counts()
     if both or options.cpp:
-        report = reports / "ctest.xml"
-        command = ["ctest", "--test-dir", options.tree, "--output-on-failure", "--no-tests=ignore"]
-        command += ["--progress", "--parallel", str(os.cpu_count() or 1)]
-        command += ["--output-junit", str(report)]
-        command += ["-R", options.k] if options.k else []
-        counts += run("GoogleTest", command, report, environment)
+        counts += run_googletest(options, passed)
     if both or options.python:
-        report = reports / "pytest.xml"
-        command = [sys.executable, "-m", "pytest", "-q", f"--junitxml={report}"]
-        command += ["-k", options.k] if options.k else []
-        command += options.pytest_arguments
-        counts += run("pytest", command, report, environment)
-    if counts.passed + counts.failed == 0:
+        counts += run_pytest(options, passed)
+    none = counts.passed + counts.failed == 0
+    if none and not options.affected:
         print("error: no test was run", file=sys.stderr)
     print(counts.line(), flush=True)
-    return 0 if counts.failed == 0 and counts.passed > 0 else 1
+    return 1 if counts.failed or (none and not options.affected) else 0
 
 
 if __name__ == "__main__":
