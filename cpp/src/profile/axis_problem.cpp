@@ -152,7 +152,7 @@ AxisProblem::Chain AxisProblem::chain_of(bool upward, const UpwardMember& m) con
     chain.add(0.0, 0.0, m.cruise);
     chain.add(falling, 0.0, last * per_down);
   } else {
-    chain.add(falling, sign * first, (first + last) * per_down);
+    chain.add(falling, sign * first, m.sum * per_down);
   }
   chain.add(0.0, -sign * last, family.last_hold(m));
   chain.add(rising, -sign * last, (last + sign * to_.qdd) * per_up);

@@ -15,10 +15,13 @@ constexpr int kMostSteps = 100;
 constexpr double kConverged = 4e-16;
 /// As above, where a step costs square roots and the start is nearly the root.
 constexpr double kPolished = 1e-15;
+constexpr int kPolishingSteps = 3;
 
 double square(double x) { return x * x; }
 
-/// Root of c2 x² + c1 x + c0 in ascending order; false where there is none.
+double snapped(double x, double slack) { return std::abs(x) <= slack ? 0.0 : x; }
+
+/// Roots of c2 x² + c1 x + c0 in ascending order; false where there is none.
 bool roots(double c2, double c1, double c0, std::array<double, 2>& x) {
   const double under = c1 * c1 - 4.0 * c2 * c0;
   if (!(under > 0.0) || c2 == 0.0) return false;
@@ -37,19 +40,8 @@ UpwardFamily::UpwardFamily(double v0, double a0, double v1, double a1,
   per_down_ = 1.0 / limits.jerk_down;
   half_ = 0.5 * (per_up_ + per_down_);
   cubic_ = half_ * (per_up_ + 2.0 * per_down_) / 3.0;
-  outer_ = {v0 - 0.5 * a0 * a0 * per_up_, a0, limits.rise};
-  inner_ = {v1 - 0.5 * a1 * a1 * per_up_, -a1, limits.fall};
-  first_is_outer_ = outer_.v <= inner_.v;
-  if (!first_is_outer_) std::swap(outer_, inner_);
-  k_ = (inner_.v - outer_.v) / half_;
-  const double slack = kRounding * (square(inner_.lead) + square(outer_.lead) +
-                                    (std::abs(inner_.v) + std::abs(outer_.v)) / half_);
-  // Where the sides are alike but for rounding, the one that can be monotone is the inner.
-  if (k_ <= slack && outer_.lead < 0.0 && inner_.lead > 0.0) {
-    first_is_outer_ = !first_is_outer_;
-    std::swap(outer_, inner_);
-    k_ = 0.0;
-  }
+  outer_ = {v0 - 0.5 * a0 * a0 * per_up_, a0, limits.rise, v0};
+  inner_ = {v1 - 0.5 * a1 * a1 * per_up_, -a1, limits.fall, v1};
   time_offset_ = (a1 - a0) * per_up_;
   gain_offset_ = 0.0;
   for (const Side& side : {outer_, inner_}) {
@@ -57,13 +49,27 @@ UpwardFamily::UpwardFamily(double v0, double a0, double v1, double a1,
     gain_offset_ -= lead * (side.v + square(side.lead) * per_up_ / 6.0);
   }
 
-  has_monotone_ = has_gap_ = false;
-  monotone_end_ = gap_begin_ = 0.0;
-  crest_start_ = {};
+  // What the velocity changes beyond the way at full jerk up, and beyond that at full jerk down.
+  // Mirrored, they change places and signs to the last bit, so that a family and its mirror image
+  // take the same decisions.
+  const double slack = kRounding * (std::abs(v0) + std::abs(v1) + half_ * (a0 * a0 + a1 * a1));
+  const double bend = 0.5 * (a1 - a0) * (a1 + a0);
+  const double beyond_up = snapped(v1 - v0 - bend * per_up_, slack);
+  const double beyond_down = snapped(v1 - v0 + bend * per_down_, slack);
+  first_is_outer_ = beyond_up > 0.0 || (beyond_up == 0.0 && a1 > 0.0);
+  if (!first_is_outer_) std::swap(outer_, inner_);
+  k_ = std::abs(beyond_up) / half_;
 
   // The lowest top, counted from inner_.v: the higher of what the two sides need.
-  const double outer_least = square(std::max(outer_.lead, 0.0)) - k_;
   const double inner_least = square(std::max(inner_.lead, 0.0));
+  double outer_least = -k_;
+  if (outer_.lead > 0.0) {
+    if (beyond_down == 0.0) {
+      k_ = std::max(0.0, (outer_.lead - inner_.lead) * (outer_.lead + inner_.lead));
+    }
+    outer_least = beyond_down == 0.0 ? square(inner_.lead) : square(outer_.lead) - k_;
+  }
+  crest_start_ = {};
   if (outer_least > inner_least) {
     crest_start_.outer = outer_.lead;
     crest_start_.inner = std::sqrt(outer_least);
@@ -71,54 +77,64 @@ UpwardFamily::UpwardFamily(double v0, double a0, double v1, double a1,
     crest_start_.inner = std::max(inner_.lead, 0.0);
     crest_start_.outer = std::sqrt(k_ + inner_least);
   }
+  crest_start_.sum = crest_start_.outer + crest_start_.inner;
   lowest_ = half_ * std::max(outer_least, inner_least);
   highest_ = std::max(limits.velocity - inner_.v, lowest_);
   top_ = limits.velocity;
   settle(crest_start_);
 
-  if (inner_.lead < 0.0) {
-    const double room = square(inner_.lead) - outer_least;
-    has_monotone_ = room >= -slack;
-    has_gap_ = has_monotone_ && outer_least > 0.0;
-    if (has_gap_) {
-      monotone_end_ = std::max(inner_.lead, -std::sqrt(outer_least));
-      gap_begin_ = of_inner(monotone_end_).duration;
-    }
-  }
+  has_monotone_ = inner_.lead < 0.0 && square(inner_.lead) >= outer_least;
+  has_gap_ = has_monotone_ && outer_least > 0.0;
+  monotone_end_ = has_gap_ ? std::max(inner_.lead, -std::sqrt(outer_least)) : 0.0;
+  gap_begin_ = has_gap_ ? of_inner(monotone_end_).duration : 0.0;
 }
 
 /// Holds, duration and gain of a member whose peaks without holds are given; a side above its cap
-/// is cut to it, and holds it until the same top is reached.
+/// is cut to it, and holds it until the same top is reached. Phase by phase: the closed form above
+/// would take large terms from one another where one jerk is much smaller than the other.
 void UpwardFamily::settle(UpwardMember& m) const noexcept {
-  m.duration = time_offset_;
-  m.gain = gain_offset_;
+  m.duration = m.gain = 0.0;
+  bool is_cut = false;
+  // From the given state to the end of the hold, for the inner side backwards.
   const auto add = [&](const Side& side, double& peak, double& hold) {
-    peak = std::max(peak, side.lead);
     hold = 0.0;
+    if (peak < side.lead) {
+      peak = side.lead;
+      is_cut = true;
+    }
     if (peak > side.cap) {
       hold = half_ * (peak - side.cap) * (peak + side.cap) / side.cap;
       peak = side.cap;
-      m.gain += hold * peak * ((0.5 * per_up_ + per_down_) * peak + 0.5 * hold);
+      is_cut = true;
     }
-    const double t = 2.0 * half_ * peak + hold;
-    m.duration += t;
-    m.gain += side.v * t + cubic_ * peak * peak * peak;
+    const double t = (peak - side.lead) * per_up_;
+    const double velocity = side.given + 0.5 * t * (side.lead + peak);
+    m.duration += t + hold;
+    m.gain += t * (side.given + t * (0.5 * side.lead + (peak - side.lead) / 6.0)) +
+              hold * (velocity + 0.5 * hold * peak);
+    return velocity + hold * peak;
   };
-  add(outer_, m.outer, m.outer_hold);
+  const double velocity = add(outer_, m.outer, m.outer_hold);
   add(inner_, m.inner, m.inner_hold);
-  m.duration = std::max(m.duration, 0.0);
+  if (is_cut) m.sum = std::max(m.outer + m.inner, 0.0);
+  const double t = m.sum * per_down_;
+  m.duration += t;
+  m.gain += t * (velocity + t * (0.5 * m.outer - m.sum / 6.0));
 }
 
 UpwardMember UpwardFamily::of_inner(double inner) const noexcept {
   UpwardMember m{};
   m.inner = inner;
   m.outer = std::sqrt(k_ + inner * inner);
+  // Where they nearly cancel, their sum is better known from K.
+  m.sum = inner < 0.0 ? k_ / (m.outer - inner) : m.outer + inner;
   settle(m);
   return m;
 }
 
 UpwardMember UpwardFamily::of_sum(double sum) const noexcept {
   UpwardMember m{};
+  m.sum = sum;
   const double difference = sum > 0.0 ? k_ / sum : 0.0;
   m.outer = 0.5 * (sum + difference);
   m.inner = 0.5 * (sum - difference);
@@ -131,6 +147,7 @@ UpwardMember UpwardFamily::of_excess(double excess) const noexcept {
   UpwardMember m{};
   m.inner = std::sqrt(squared);
   m.outer = std::sqrt(k_ + squared);
+  m.sum = m.outer + m.inner;
   settle(m);
   return m;
 }
@@ -292,7 +309,21 @@ UpwardMember UpwardFamily::reach_free(double gain, const UpwardMember& from,
     sum -= change;
     if (change <= kConverged * sum) break;
   }
-  return of_sum(std::max(sum, low));
+  sum = std::max(sum, low);
+  UpwardMember m = of_sum(sum);
+  // The closed form has lost digits where its terms are much larger than the gain.
+  for (int step = 0; step < kPolishingSteps; ++step) {
+    const double error = m.gain - gain;
+    if (std::abs(error) <= kPolished * std::abs(gain)) break;
+    const double top = inner_.v + half_ * m.inner * m.inner;
+    const double slope = 2.0 * half_ * (top + 0.5 * per_down_ * m.outer * m.inner);
+    const double next = std::clamp(sum - error / slope, low, high);
+    const UpwardMember other = of_sum(next);
+    if (!(std::abs(other.gain - gain) < std::abs(error))) break;
+    sum = next;
+    m = other;
+  }
+  return m;
 }
 
 /// The inner side holds, the outer does not, between the excesses of `low` and `high`.

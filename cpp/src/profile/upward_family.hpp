@@ -35,6 +35,7 @@ struct UpwardLimits {
 /// One motion of the family.
 struct UpwardMember {
   double outer, inner;            ///< peaks of the two sides, as above
+  double sum;                     ///< of the two: what the falling jerk takes off in between
   double outer_hold, inner_hold;  ///< time at the acceleration limits [s]
   double cruise;                  ///< time at the velocity limit [s]
   double duration, gain;
@@ -88,9 +89,10 @@ class UpwardFamily {
 
  private:
   struct Side {
-    double v;     ///< velocity where the line through the given state crosses a = 0
-    double lead;  ///< the peak cannot be lower than the given acceleration
-    double cap;   ///< nor higher than this
+    double v;      ///< velocity where the line through the given state crosses a = 0
+    double lead;   ///< the peak cannot be lower than the given acceleration
+    double cap;    ///< nor higher than this
+    double given;  ///< the given velocity
   };
 
   [[nodiscard]] UpwardMember of_inner(double inner) const noexcept;

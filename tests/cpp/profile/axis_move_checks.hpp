@@ -56,17 +56,23 @@ inline AxisRequest random_request(std::mt19937_64& random, double decades) {
   return r;
 }
 
-/// An end that a short motion from the start at partial jerk reaches, or just misses: there the
-/// durations have gaps.
+/// An end that a short motion from the start at constant jerk reaches, just misses, or reaches but
+/// for rounding; with the jerk at its limit it is the only motion that short. There the durations
+/// have gaps.
 inline AxisRequest random_short_request(std::mt19937_64& random) {
   for (;;) {
     AxisRequest r = random_request(random, 0.7);
     const double t = log_uniform(random, 1e-3, 1.0);
-    const double j = uniform(random, r.limits.jerk_min, r.limits.jerk_max);
+    double j = uniform(random, r.limits.jerk_min, r.limits.jerk_max);
+    if (random() % 4 == 0) j = random() % 2 == 0 ? r.limits.jerk_min : r.limits.jerk_max;
     r.end.qdd = r.start.qdd + j * t;
     r.end.qd = r.start.qd + t * (r.start.qdd + j * t / 2.0);
-    r.end.q = r.start.q + t * (r.start.qd + t * (r.start.qdd / 2.0 + j * t / 6.0)) +
-              uniform(random, -0.1, 0.1) * std::abs(j) * t * t * t;
+    r.end.q = r.start.q + t * (r.start.qd + t * (r.start.qdd / 2.0 + j * t / 6.0));
+    if (random() % 3 != 0) {
+      const double share = uniform(random, -0.1, 0.1) * log_uniform(random, 1e-6, 1.0);
+      r.end.q += share * std::abs(j) * t * t * t;
+    }
+    if (random() % 5 == 0) r.end.qd += 1e-15;
     AxisMove probe;
     if (quickest_move(r.start, r.end, r.limits, probe) == MoveStatus::kSolved) return r;
   }
