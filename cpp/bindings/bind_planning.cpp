@@ -224,31 +224,24 @@ void bind_planning(py::module_& m) {
       .def("sample_at", &sample_at, py::arg("times"));
   m.def(
       "check",
-      [](const RobotHandle& robot, const MotionProgram& program, double position_tolerance,
-         double angle_tolerance) {
-        return MotionPlanner(robot.robot, {position_tolerance, angle_tolerance})
-            .check(program)
-            .problems;
+      [](const RobotHandle& robot, const MotionProgram& program) {
+        return MotionPlanner(robot.robot).check(program).problems;
       },
-      py::arg("robot"), py::arg("program"), py::arg("position_tolerance"),
-      py::arg("angle_tolerance"), py::call_guard<py::gil_scoped_release>(),
+      py::arg("robot"), py::arg("program"), py::call_guard<py::gil_scoped_release>(),
       "Every problem of a program, in program order.");
   m.def(
       "plan",
-      [](const RobotHandle& robot, const MotionProgram& program, double position_tolerance,
-         double angle_tolerance) {
-        PlannedMotion planned =
-            MotionPlanner(robot.robot, {position_tolerance, angle_tolerance}).plan(program);
+      [](const RobotHandle& robot, const MotionProgram& program) {
+        PlannedMotion planned = MotionPlanner(robot.robot).plan(program);
         return MotionHandle{robot.robot,
                             std::make_shared<const Trajectory>(std::move(planned.trajectory)),
                             std::move(planned.corners), std::move(planned.report.problems)};
       },
-      py::arg("robot"), py::arg("program"), py::arg("position_tolerance"),
-      py::arg("angle_tolerance"), py::call_guard<py::gil_scoped_release>(),
+      py::arg("robot"), py::arg("program"), py::call_guard<py::gil_scoped_release>(),
       "Plans; raises the first error of the report.");
-  const PlannerOptions defaults;
-  m.attr("POSITION_TOLERANCE") = defaults.position_tolerance;
-  m.attr("ANGLE_TOLERANCE") = defaults.angle_tolerance;
+  const LineTolerance defaults;
+  m.attr("POSITION_TOLERANCE") = defaults.position;
+  m.attr("ANGLE_TOLERANCE") = defaults.angle;
 }
 
 }  // namespace viapoint::python

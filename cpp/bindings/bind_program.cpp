@@ -110,6 +110,13 @@ void bind_parts(py::module_& m) {
 void bind_program(py::module_& m) {
   bind_parts(m);
   py::class_<MotionProgram>(m, "MotionProgram", "Moves, waits and outputs, in order.")
+      .def(
+          "set_tolerance",
+          [](MotionProgram& program, double position, double angle) {
+            program.tolerance = {position, angle};
+          },
+          py::arg("position"), py::arg("angle"),
+          "How far the tool may be from its straight lines [m, rad].")
       .def(py::init([](const RobotHandle& robot, const Eigen::VectorXd& start) {
              return MotionProgram{robot.robot->name(),
                                   robot.robot->fingerprint(),

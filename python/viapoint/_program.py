@@ -80,11 +80,11 @@ class Program:
         self.name = name
         self._defaults = (speed, acceleration, scale, zone_of(zone))
         self._options()  # refuses a bad default here, where it was given
-        self._tolerances = (
+        self._core = _core.MotionProgram(robot._core, vector(start, "start", robot.joints))
+        self._core.set_tolerance(
             number(position_tolerance, "position_tolerance", "m", above=0.0),
             number(angle_tolerance, "angle_tolerance", "rad", above=0.0),
         )
-        self._core = _core.MotionProgram(robot._core, vector(start, "start", robot.joints))
 
     def __repr__(self) -> str:
         """Name, robot and number of steps."""
@@ -262,7 +262,7 @@ class Program:
         Report
             Every problem at once, each with the script's line, and what would make it right.
         """
-        return Report(_core.check(self.robot._core, self._core, *self._tolerances))
+        return Report(_core.check(self.robot._core, self._core))
 
     def plan(self) -> Motion:
         """Plan and prove the motion.
@@ -273,7 +273,7 @@ class Program:
             The first error of the report.
         """
         try:
-            core = _core.plan(self.robot._core, self._core, *self._tolerances)
+            core = _core.plan(self.robot._core, self._core)
         except MotionError as error:
             _session.current().refused(self, error)
             raise

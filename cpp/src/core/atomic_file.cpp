@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -49,28 +50,65 @@ void write_all(int fd, std::string_view content, const std::string& path) {
   }
 }
 
+/// A new file beside `target`: rename is atomic only within one file system. Gone with the object,
+/// unless it was renamed. Its rights are those of any new file.
+class Aside {
+ public:
+  Aside(const std::filesystem::path& target, const std::string& path)
+      : name_(free_name(target)),
+        file_(::open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666)) {
+    if (file_.get() < 0) fail("cannot create a file beside it", path);
+  }
+  ~Aside() { ::unlink(name_.c_str()); }
+  Aside(const Aside&) = delete;
+  Aside& operator=(const Aside&) = delete;
+  [[nodiscard]] int fd() const { return file_.get(); }
+  [[nodiscard]] const std::string& name() const { return name_; }
+
+ private:
+  /// Nobody else's: this process, and a count within it.
+  static std::string free_name(const std::filesystem::path& target) {
+    static std::atomic<unsigned> count{0};
+    const std::string suffix = "." + std::to_string(::getpid()) + "-" + std::to_string(count++);
+    std::string name =
+        (target.parent_path() / ("." + target.filename().string() + suffix)).string();
+    ::unlink(name.c_str());  // left behind by a process of that number that was killed
+    return name;
+  }
+
+  std::string name_;
+  Descriptor file_;
+};
+
+/// A device or a pipe has no old content to keep: it is written to, never replaced.
+void write_through(const std::string& path, std::string_view content) {
+  const Descriptor file(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
+  if (file.get() < 0) fail("cannot open", path);
+  write_all(file.get(), content, path);
+}
+
 }  // namespace
 
 void write_file_atomically(const std::string& path, std::string_view content) {
-  const std::filesystem::path target(path);
+  struct stat old{};
+  const bool exists = ::stat(path.c_str(), &old) == 0;
+  if (exists && !S_ISREG(old.st_mode)) {
+    write_through(path, content);
+    return;
+  }
+  // A link stays a link: what it points to is replaced.
+  std::error_code unresolved;
+  std::filesystem::path target = std::filesystem::weakly_canonical(path, unresolved);
+  if (unresolved) target = path;
   const std::filesystem::path folder =
       target.has_parent_path() ? target.parent_path() : std::filesystem::path(".");
-  // The same folder: rename is atomic only within one file system.
-  std::string aside = (folder / ("." + target.filename().string() + ".XXXXXX")).string();
-  const Descriptor file(::mkstemp(aside.data()));
-  if (file.get() < 0) fail("cannot create a file beside it", path);
-  try {
-    write_all(file.get(), content, path);
-    // mkstemp makes the file private; keep the rights of the one replaced, else the usual ones.
-    struct stat old{};
-    const mode_t mode = ::stat(path.c_str(), &old) == 0 ? old.st_mode & 07777U : 0644U;
-    if (::fchmod(file.get(), mode) != 0) fail("cannot set the rights", path);
-    if (::fsync(file.get()) != 0) fail("cannot flush to disk", path);
-    if (::rename(aside.c_str(), path.c_str()) != 0) fail("cannot rename into place", path);
-  } catch (...) {
-    ::unlink(aside.c_str());
-    throw;
-  }
+
+  const Aside aside(target, path);
+  write_all(aside.fd(), content, path);
+  if (exists && ::fchmod(aside.fd(), old.st_mode & 07777U) != 0)
+    fail("cannot set the rights", path);
+  if (::fsync(aside.fd()) != 0) fail("cannot flush to disk", path);
+  if (::rename(aside.name().c_str(), target.c_str()) != 0) fail("cannot rename into place", path);
   const Descriptor directory(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (directory.get() < 0 || ::fsync(directory.get()) != 0) {
     fail("written, but the folder could not be flushed to disk", path);

@@ -1,5 +1,6 @@
 #include "planning/itinerary.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <utility>
@@ -14,8 +15,8 @@ constexpr int kOutputs = 64;
 
 class Walk {
  public:
-  Walk(const RobotModel& robot, const PlannerOptions& options, const MotionProgram& program)
-      : robot_(robot), builder_(robot, options), program_(program) {}
+  Walk(const RobotModel& robot, const MotionProgram& program)
+      : robot_(robot), builder_(robot, program.tolerance), program_(program) {}
 
   Itinerary run() {
     if (!begin()) return std::move(itinerary_);
@@ -25,7 +26,10 @@ class Walk {
     if (itinerary_.items.empty() && itinerary_.report.ok()) {
       Problem problem;
       problem.code = ErrorCode::kEmptyProgram;
-      problem.message = "the program does nothing: it has no move, wait or output";
+      problem.message =
+          program_.steps.empty()
+              ? "the program does nothing: it has no move, wait or output"
+              : "the program does nothing: its moves go nowhere, the arm is there already";
       problem.ways_out = {"add a move, e.g. movej(q)"};
       itinerary_.report.problems.push_back(std::move(problem));
     }
@@ -82,6 +86,17 @@ class Walk {
               robot_.fingerprint() + "): chain, tool or limits differ",
           {"load the robot that the program was written for",
            "write the program anew for this robot"});
+      return false;
+    }
+    const LineTolerance& tolerance = program_.tolerance;
+    const double finest = std::min(tolerance.position, tolerance.angle);
+    if (!(finest >= kFinestTolerance) || !std::isfinite(tolerance.position + tolerance.angle)) {
+      char text[160];
+      std::snprintf(
+          text, sizeof text,
+          "tolerance of straight lines: %g m and %g rad; each must be at least %g and finite",
+          tolerance.position, tolerance.angle, kFinestTolerance);
+      add(ErrorCode::kBadArgument, text);
       return false;
     }
     try {
@@ -207,9 +222,8 @@ class Walk {
 
 }  // namespace
 
-Itinerary make_itinerary(const RobotModel& robot, const PlannerOptions& options,
-                         const MotionProgram& program) {
-  return Walk(robot, options, program).run();
+Itinerary make_itinerary(const RobotModel& robot, const MotionProgram& program) {
+  return Walk(robot, program).run();
 }
 
 void locate(Problem& problem, const MotionProgram& program, int step) {

@@ -162,8 +162,8 @@ Leg LegBuilder::lin(const LinMove& move, const JointVector& start) const {
                        "orientation=\"wrist\": the wrist joints are interpolated"});
   }
   InsertionOptions how;
-  how.position_tolerance = options_.position_tolerance;
-  how.angle_tolerance = options_.angle_tolerance;
+  how.position_tolerance = tolerance_.position;
+  how.angle_tolerance = tolerance_.angle;
   how.hold = free_orientation ? Hold::kPosition : Hold::kPose;
   Leg leg = follow(curve, start, how);
   require_arrival(move, leg);
@@ -220,8 +220,8 @@ Leg LegBuilder::lin_by_wrist(const Target& target, const JointVector& start) con
   std::optional<MotionError> first;
   for (const JointVector& end : ends) {
     InsertionOptions how;
-    how.position_tolerance = options_.position_tolerance;
-    how.angle_tolerance = options_.angle_tolerance;
+    how.position_tolerance = tolerance_.position;
+    how.angle_tolerance = tolerance_.angle;
     how.hold = Hold::kWrist;
     how.wrist_goal = end;
     try {

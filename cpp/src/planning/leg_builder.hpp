@@ -15,8 +15,8 @@ namespace viapoint::planning {
 /// Immutable; borrows the robot.
 class LegBuilder {
  public:
-  LegBuilder(const RobotModel& robot, const PlannerOptions& options)
-      : robot_(robot), options_(options) {}
+  LegBuilder(const RobotModel& robot, const LineTolerance& tolerance)
+      : robot_(robot), tolerance_(tolerance) {}
 
   /// Joints of a target; the branch nearest to `near` where it is a pose or a position.
   /// @throws MotionError: kBadArgument, kJointLimit, kCouplingLimit, kUncontrolled, kUnreachable…
@@ -39,7 +39,7 @@ class LegBuilder {
   void require_arrival(const LinMove& move, const Leg& leg) const;
 
   const RobotModel& robot_;
-  const PlannerOptions& options_;
+  LineTolerance tolerance_;
 };
 
 }  // namespace viapoint::planning

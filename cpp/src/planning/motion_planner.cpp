@@ -151,9 +151,8 @@ const TimedMove* timed_alone(const MotionProgram& program) {
 }
 
 /// Everything but raising: the motion is empty where the report has errors.
-PlannedMotion draft(const RobotModel& robot, const PlannerOptions& options,
-                    const MotionProgram& program) {
-  const Itinerary itinerary = planning::make_itinerary(robot, options, program);
+PlannedMotion draft(const RobotModel& robot, const MotionProgram& program) {
+  const Itinerary itinerary = planning::make_itinerary(robot, program);
   if (!itinerary.report.ok()) {
     PlannedMotion motion;
     motion.report = itinerary.report;
@@ -180,15 +179,14 @@ std::string Report::describe() const {
   return text;
 }
 
-MotionPlanner::MotionPlanner(RobotPtr robot, PlannerOptions options)
-    : robot_(std::move(robot)), options_(options) {}
+MotionPlanner::MotionPlanner(RobotPtr robot) : robot_(std::move(robot)) {}
 
 Report MotionPlanner::check(const MotionProgram& program) const {
   try {
     if (const TimedMove* timed = timed_alone(program)) {
       return plan_timed(*robot_, program, *timed, 0).report;
     }
-    return draft(*robot_, options_, program).report;
+    return draft(*robot_, program).report;
   } catch (const MotionError& error) {
     Report report;
     report.problems.push_back(error.problem());
@@ -198,8 +196,8 @@ Report MotionPlanner::check(const MotionProgram& program) const {
 
 PlannedMotion MotionPlanner::plan(const MotionProgram& program) const {
   const TimedMove* timed = timed_alone(program);
-  PlannedMotion motion = timed != nullptr ? plan_timed(*robot_, program, *timed, 0)
-                                          : draft(*robot_, options_, program);
+  PlannedMotion motion =
+      timed != nullptr ? plan_timed(*robot_, program, *timed, 0) : draft(*robot_, program);
   // A timed motion is for study: broken limits stay in its report, and only a drive refuses them.
   if (timed != nullptr && !motion.trajectory.pieces().empty()) return motion;
   for (const Problem& problem : motion.report.problems) {

@@ -128,8 +128,12 @@ Pose pose_of(const Node& node) {
   }
 }
 
-Target target_of(const Node& node) {
-  node.only({"joints", "pose", "position", "correction", "seconds"});
+Target target_of(const Node& node, bool timed = false) {
+  if (timed) {
+    node.only({"joints", "pose", "position", "correction", "seconds"});
+  } else {
+    node.only({"joints", "pose", "position", "correction"});
+  }
   if (node.has("joints")) return JointTarget{node.at("joints").joint_vector()};
   if (node.has("pose")) {
     PoseTarget target{pose_of(node.at("pose"))};
@@ -152,7 +156,7 @@ TimedMove timed_of(const Node& node) {
   move.t_acc = node.at("t_acc").number();
   const Node points = node.at("points");
   for (size_t i = 0; i < points.array_size(); ++i) {
-    move.points.push_back({target_of(points.item(i)), points.item(i).at("seconds").number()});
+    move.points.push_back({target_of(points.item(i), true), points.item(i).at("seconds").number()});
   }
   return move;
 }
@@ -176,9 +180,26 @@ std::optional<double> wish(const Node& node, const char* key) {
   return value;
 }
 
+/// A step is one thing: what says two would have one of them ignored.
+void require_one_kind(const Node& node) {
+  int kinds = 0;
+  for (const char* kind : {"ptp", "lin", "wait", "set_do", "timed"})
+    kinds += node.has(kind) ? 1 : 0;
+  if (kinds != 1) node.refuse("exactly one of ptp, lin, wait, set_do, timed");
+  if (node.has("orientation") && !node.has("lin")) {
+    node.at("orientation").refuse("no orientation but on a lin");
+  }
+  if (!node.has("ptp") && !node.has("lin")) {
+    for (const char* wish : {"zone", "speed", "acceleration", "scale"}) {
+      if (node.has(wish)) node.at(wish).refuse(std::string("no ") + wish + " but on a move");
+    }
+  }
+}
+
 Step step_of(const Node& node) {
   node.only({"ptp", "lin", "orientation", "wait", "set_do", "timed", "zone", "speed",
              "acceleration", "scale", "source"});
+  require_one_kind(node);
   Step step;
   if (node.has("ptp")) {
     step.what = PtpMove{target_of(node.at("ptp"))};
@@ -190,10 +211,8 @@ Step step_of(const Node& node) {
     const Node output = node.at("set_do");
     output.only({"index", "value"});
     step.what = SetOutput{output.at("index").integer(), output.at("value").boolean()};
-  } else if (node.has("timed")) {
-    step.what = timed_of(node.at("timed"));
   } else {
-    node.refuse("one of ptp, lin, wait, set_do, timed");
+    step.what = timed_of(node.at("timed"));
   }
   if (node.has("zone")) step.options.zone = zone_of(node.at("zone"));
   step.options.speed = wish(node, "speed");
@@ -211,9 +230,12 @@ Step step_of(const Node& node) {
 
 std::string to_json(const MotionProgram& program) {
   const Json robot = {{"name", program.robot}, {"fingerprint", program.robot_fingerprint}};
+  const Json tolerance = {{"position", program.tolerance.position},
+                          {"angle", program.tolerance.angle}};
   std::string text = "{\n \"viapoint_program\": " + std::to_string(kFormat) +
                      ",\n \"robot\": " + robot.dump() +
-                     ",\n \"start\": " + json_of(program.start).dump() + ",\n \"steps\": [";
+                     ",\n \"start\": " + json_of(program.start).dump() +
+                     ",\n \"tolerance\": " + tolerance.dump() + ",\n \"steps\": [";
   const char* separator = "\n  ";
   for (const Step& step : program.steps) {
     text += separator + json_of(step).dump();
@@ -222,19 +244,29 @@ std::string to_json(const MotionProgram& program) {
   return text + "\n ]\n}\n";
 }
 
+namespace {
+
+[[noreturn]] void refuse_text(const std::string& source, std::string message) {
+  Problem problem;
+  problem.code = ErrorCode::kBadProgram;
+  problem.file = source;
+  problem.message = std::move(message);
+  throw MotionError(std::move(problem));
+}
+
+}  // namespace
+
 MotionProgram program_from_json(const std::string& text, const std::string& source) {
   Json json;
   try {
     json = Json::parse(text);
   } catch (const Json::parse_error& error) {
-    Problem problem;
-    problem.code = ErrorCode::kBadProgram;
-    problem.file = source;
-    problem.message = std::string("not a JSON file, or cut short: ") + error.what();
-    throw MotionError(std::move(problem));
+    refuse_text(source, "not a JSON file, or cut short, at byte " + std::to_string(error.byte));
+  } catch (const Json::exception&) {  // a number beyond all doubles
+    refuse_text(source, "a number in it is too large to be read");
   }
   const Node root(json, "", source);
-  root.only({"viapoint_program", "robot", "start", "steps"});
+  root.only({"viapoint_program", "robot", "start", "tolerance", "steps"});
   if (root.at("viapoint_program").integer() != kFormat) {
     root.at("viapoint_program").refuse("format " + std::to_string(kFormat));
   }
@@ -244,6 +276,11 @@ MotionProgram program_from_json(const std::string& text, const std::string& sour
   program.robot = robot.at("name").text();
   program.robot_fingerprint = robot.at("fingerprint").text();
   program.start = root.at("start").joint_vector();
+  if (root.has("tolerance")) {
+    const Node tolerance = root.at("tolerance");
+    tolerance.only({"position", "angle"});
+    program.tolerance = {tolerance.at("position").number(), tolerance.at("angle").number()};
+  }
   const Node steps = root.at("steps");
   for (size_t i = 0; i < steps.array_size(); ++i) program.steps.push_back(step_of(steps.item(i)));
   return program;

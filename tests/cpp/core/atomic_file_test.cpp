@@ -47,6 +47,29 @@ TEST_F(AtomicFile, KeepsTheRightsOfTheFileItReplaces) {
   EXPECT_EQ(status.st_mode & 0777U, 0600U);
 }
 
+TEST_F(AtomicFile, FollowsLinksAndWritesIntoDevices) {
+  const std::string path = folder_ / "points.json";
+  const std::string link = folder_ / "link.json";
+  write_file_atomically(path, "old");
+  std::filesystem::create_symlink(path, link);
+  write_file_atomically(link, "new");
+  EXPECT_TRUE(std::filesystem::is_symlink(link));
+  EXPECT_EQ(read_file(path), "new");
+
+  write_file_atomically("/dev/null", "gone");
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
+}
+
+TEST_F(AtomicFile, HonoursTheUmask) {
+  const std::string path = folder_ / "secret.json";
+  const mode_t before = ::umask(077);
+  write_file_atomically(path, "x");
+  ::umask(before);
+  struct stat status{};
+  ASSERT_EQ(::stat(path.c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 0777U, 0600U);
+}
+
 TEST_F(AtomicFile, RefusesByNameWhereItCannotWriteOrRead) {
   const auto expect_named = [](const auto& action, const std::string& path) {
     try {

@@ -42,6 +42,7 @@ MotionProgram random_program(std::mt19937& random) {
   const int joints = 1 + static_cast<int>(random() % 7);
   program.robot = "arm \"quoted\"";
   program.robot_fingerprint = "00ff";
+  program.tolerance = {1e-4 / 3.0, 1e-3 / 7.0};
   program.start = random_joints(random, joints);
   const size_t steps = 1 + random() % 8;
   for (size_t i = 0; i < steps; ++i) {
@@ -65,12 +66,18 @@ MotionProgram random_program(std::mt19937& random) {
             1.0 / 7.0,
             static_cast<TimedSpace>(random() % 2)};
     }
+    const bool moves =
+        std::holds_alternative<PtpMove>(step.what) || std::holds_alternative<LinMove>(step.what);
+    if (random() % 2 == 0) step.source = {"cell/α.py", 1 + static_cast<int>(random() % 99)};
+    if (!moves) {
+      program.steps.push_back(step);
+      continue;
+    }
     if (random() % 2 == 0) step.options.speed = 0.1 / 3.0;
     if (random() % 2 == 0) step.options.acceleration = 1.0 / 7.0;
     if (random() % 2 == 0) step.options.scale = 1.0 / 3.0;
     step.options.zone = {static_cast<ZoneKind>(random() % 4), 0.0};
     if (step.options.zone.kind != ZoneKind::kFine) step.options.zone.size = 0.1 / 7.0;
-    if (random() % 2 == 0) step.source = {"cell/α.py", 1 + static_cast<int>(random() % 99)};
     program.steps.push_back(step);
   }
   return program;
@@ -98,6 +105,8 @@ TEST(ProgramJson, ReadsBackToTheLastBit) {
     // Text holds every number in its shortest exact form, so equal text means equal programs.
     ASSERT_EQ(to_json(back), text);
     ASSERT_EQ(back.start, program.start);
+    ASSERT_EQ(back.tolerance.position, program.tolerance.position);
+    ASSERT_EQ(back.tolerance.angle, program.tolerance.angle);
     ASSERT_EQ(back.steps.size(), program.steps.size());
     for (size_t i = 0; i < program.steps.size(); ++i) {
       ASSERT_EQ(back.steps[i].what.index(), program.steps[i].what.index());
@@ -144,6 +153,21 @@ TEST(ProgramJson, NamesThePlaceAndWhatWasExpected) {
                 .find("format 1"),
             std::string::npos);
   EXPECT_NE(message_of("[]").find("expected an object"), std::string::npos);
+}
+
+TEST(ProgramJson, RefusesWhatItWouldOtherwiseIgnore) {
+  const auto message = [](const std::string& step) {
+    return message_of(std::string(kHead) + step + "]}");
+  };
+  EXPECT_NE(message(R"({"ptp": {"joints": [0]}, "wait": 1})").find("exactly one of"),
+            std::string::npos);
+  EXPECT_NE(message("{}").find("exactly one of"), std::string::npos);
+  EXPECT_NE(message(R"({"ptp": {"joints": [0]}, "orientation": "least"})").find("orientation"),
+            std::string::npos);
+  EXPECT_NE(message(R"({"wait": 1, "speed": 1})").find("no speed"), std::string::npos);
+  EXPECT_NE(message(R"({"ptp": {"joints": [0], "seconds": 1}})").find("no member \"seconds\""),
+            std::string::npos);
+  EXPECT_NE(message(R"({"wait": 1e400})").find("too large"), std::string::npos);
 }
 
 TEST(ProgramJson, RefusesAPoseThatIsNoRotation) {

@@ -36,15 +36,10 @@ struct PlannedMotion {
   Report report;  ///< warnings; for timed programs also the limits they break
 };
 
-struct PlannerOptions {
-  double position_tolerance = 5e-5;                ///< straight lines [m]
-  double angle_tolerance = 1.7453292519943296e-4;  ///< straight lines [rad] (0.01°)
-};
-
 /// Immutable; keeps the robot alive. Real-time: not. Threads: any, at once.
 class MotionPlanner {
  public:
-  explicit MotionPlanner(RobotPtr robot, PlannerOptions options = {});
+  explicit MotionPlanner(RobotPtr robot);
 
   /// Looks at every step without moving anything; never throws for a fault of the program.
   [[nodiscard]] Report check(const MotionProgram& program) const;
@@ -53,7 +48,6 @@ class MotionPlanner {
 
  private:
   RobotPtr robot_;
-  PlannerOptions options_;
 };
 
 }  // namespace viapoint

@@ -85,10 +85,20 @@ struct Step {
   SourceLine source;
 };
 
+/// How far the tool may be from the straight line it was told, outside zones.
+struct LineTolerance {
+  double position = 5e-5;                ///< [m]
+  double angle = 1.7453292519943296e-4;  ///< [rad] (0.01°)
+};
+
+/// Finer than this a tolerance drowns in rounding [m, rad].
+inline constexpr double kFinestTolerance = 1e-8;
+
 struct MotionProgram {
   std::string robot;              ///< name of the robot it was written for
   std::string robot_fingerprint;  ///< RobotModel::fingerprint(); empty: any
   JointVector start;              ///< joints where it begins [rad or m], (n,)
+  LineTolerance tolerance;        ///< of its straight lines
   std::vector<Step> steps;
 };
 
