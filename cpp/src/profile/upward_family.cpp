@@ -56,7 +56,12 @@ UpwardFamily::UpwardFamily(double v0, double a0, double v1, double a1,
   const double bend = 0.5 * (a1 - a0) * (a1 + a0);
   const double beyond_up = snapped(v1 - v0 - bend * per_up_, slack);
   const double beyond_down = snapped(v1 - v0 + bend * per_down_, slack);
-  first_is_outer_ = beyond_up > 0.0 || (beyond_up == 0.0 && a1 > 0.0);
+  if (beyond_up == 0.0) {
+    // Alike: the inner is the one that can be monotone, or else needs less.
+    first_is_outer_ = a1 > 0.0 || (a0 > 0.0 && a0 >= -a1);
+  } else {
+    first_is_outer_ = beyond_up > 0.0;
+  }
   if (!first_is_outer_) std::swap(outer_, inner_);
   k_ = std::abs(beyond_up) / half_;
 
@@ -64,10 +69,10 @@ UpwardFamily::UpwardFamily(double v0, double a0, double v1, double a1,
   const double inner_least = square(std::max(inner_.lead, 0.0));
   double outer_least = -k_;
   if (outer_.lead > 0.0) {
-    if (beyond_down == 0.0) {
-      k_ = std::max(0.0, (outer_.lead - inner_.lead) * (outer_.lead + inner_.lead));
-    }
-    outer_least = beyond_down == 0.0 ? square(inner_.lead) : square(outer_.lead) - k_;
+    const double more = (outer_.lead - inner_.lead) * (outer_.lead + inner_.lead);
+    const bool is_falling = beyond_down == 0.0 && more >= 0.0;
+    if (is_falling) k_ = more;
+    outer_least = is_falling ? square(inner_.lead) : square(outer_.lead) - k_;
   }
   crest_start_ = {};
   if (outer_least > inner_least) {

@@ -76,9 +76,9 @@ TEST(QuickestMove, TakesAsLongReadBackwards) {
     const AxisRequest r = testing::random_request(random, 1.0);
     const AxisLimits& l = r.limits;
     const AxisRequest back{{0.0, r.end.qd, -r.end.qdd, 0.0},
-                     {r.end.q - r.start.q, r.start.qd, -r.start.qdd, 0.0},
-                     {l.velocity_min, l.velocity_max, -l.acceleration_max, -l.acceleration_min,
-                      l.jerk_min, l.jerk_max}};
+                           {r.end.q - r.start.q, r.start.qd, -r.start.qdd, 0.0},
+                           {l.velocity_min, l.velocity_max, -l.acceleration_max,
+                            -l.acceleration_min, l.jerk_min, l.jerk_max}};
     AxisMove backwards;
     // A start may come from outside the limits, an end may not.
     if (quickest_move(back.start, back.end, back.limits, backwards) != MoveStatus::kSolved)
