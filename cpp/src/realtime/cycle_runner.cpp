@@ -36,45 +36,41 @@ void CycleRunner::wait_for_cycle() noexcept {
 
 void CycleRunner::do_cycle() noexcept VIAPOINT_NONBLOCKING {
   if (channels_.faulted.load(std::memory_order_relaxed)) return;
-  if (motion_ == nullptr && (motion_ = channels_.motions.pop()) != nullptr) {
-    interpolator_.set_override(channels_.override_share.load(std::memory_order_relaxed));
-    interpolator_.begin(*motion_->trajectory);
-    cycle_of_run_ = 0;
-  }
+  if (motion_ == nullptr) begin_next();
   interpolator_.set_override(channels_.override_share.load(std::memory_order_relaxed));
   if (motion_ != nullptr) interpolator_.wish(motion_->wish.load(std::memory_order_acquire));
 
   const std::int64_t begin = clock_.now();
-  RunState state = interpolator_.tick(setpoint_);
+  interpolator_.tick(setpoint_);
   const std::int64_t end = clock_.now();
-  if (drive_.exchange(setpoint_, measurement_) == DriveStatus::kFault) {
-    interpolator_.abandon();
-    state = RunState::kFault;
-  }
+  const bool fault = drive_.exchange(setpoint_, measurement_) == DriveStatus::kFault;
+  if (fault) interpolator_.abandon();
   channels_.snapshot.write(setpoint_.q, measurement_);
 
   if (motion_ != nullptr) {
-    record_.cycle = cycle_of_run_++;
-    record_.stamp = woke_;
-    record_.latency = woke_ - due_;
-    record_.compute = end - begin;
-    record_.nominal_time = interpolator_.nominal_time();
-    record_.rate = interpolator_.rate();
-    record_.move = interpolator_.move();
-    record_.state = state;
-    record_.outputs = setpoint_.outputs;
-    record_.q = setpoint_.q;
-    record_.qd = setpoint_.qd;
-    record_.qdd = setpoint_.qdd;
-    record_.qddd = setpoint_.qddd;
-    record_.measured = measurement_.q;
-    finish(state);
+    if (!arriving_ || fault) record(end - begin);
+    finish();
   }
-  if (state == RunState::kFault) channels_.faulted.store(true, std::memory_order_release);
+  if (fault) channels_.faulted.store(true, std::memory_order_release);
 }
 
-void CycleRunner::finish(RunState state) noexcept VIAPOINT_NONBLOCKING {
+void CycleRunner::begin_next() noexcept VIAPOINT_NONBLOCKING {
+  motion_ = channels_.motions.pop();
+  if (motion_ == nullptr) return;
+  interpolator_.set_override(channels_.override_share.load(std::memory_order_relaxed));
+  interpolator_.begin(*motion_->trajectory);
+  cycle_of_run_ = 0;
+  arriving_ = false;
+}
+
+void CycleRunner::record(std::int64_t compute) noexcept VIAPOINT_NONBLOCKING {
   QueuedMotion& motion = *motion_;
+  interpolator_.describe(setpoint_, record_);
+  record_.cycle = cycle_of_run_++;
+  record_.stamp = woke_;
+  record_.latency = woke_ - due_;
+  record_.compute = compute;
+  record_.measured = measurement_.q;
   if (!channels_.log.push(record_)) motion.lost_records.fetch_add(1, std::memory_order_relaxed);
   if (late_cycles_ > 0) {
     motion.overruns.fetch_add(1, std::memory_order_relaxed);
@@ -83,12 +79,19 @@ void CycleRunner::finish(RunState state) noexcept VIAPOINT_NONBLOCKING {
   }
   motion.nominal_time.store(record_.nominal_time, std::memory_order_relaxed);
   motion.move.store(record_.move, std::memory_order_relaxed);
-  motion.state.store(state, std::memory_order_release);
-  const bool over =
-      state == RunState::kFinished || state == RunState::kStopped || state == RunState::kFault;
-  if (!over) return;
+}
+
+void CycleRunner::finish() noexcept VIAPOINT_NONBLOCKING {
+  const RunState state = interpolator_.state();
+  const bool rests = state == RunState::kFinished || state == RunState::kStopped;
+  if (rests && !arriving_) {
+    arriving_ = true;
+    return;
+  }
+  motion_->state.store(state, std::memory_order_release);
+  if (!rests && state != RunState::kFault) return;
+  channels_.motions.give_back(motion_);
   motion_ = nullptr;
-  channels_.motions.give_back(&motion);
 }
 
 void CycleRunner::let_others_run() noexcept {

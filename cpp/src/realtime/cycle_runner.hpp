@@ -42,7 +42,9 @@ class CycleRunner {
  private:
   void wait_for_cycle() noexcept;
   void do_cycle() noexcept VIAPOINT_NONBLOCKING;
-  void finish(RunState state) noexcept VIAPOINT_NONBLOCKING;
+  void begin_next() noexcept VIAPOINT_NONBLOCKING;
+  void record(std::int64_t compute) noexcept VIAPOINT_NONBLOCKING;
+  void finish() noexcept VIAPOINT_NONBLOCKING;
   void let_others_run() noexcept;
 
   Drive& drive_;
@@ -53,6 +55,9 @@ class CycleRunner {
   std::int64_t due_ = 0, woke_ = 0;
   std::int64_t late_cycles_ = 0;  ///< whole cycles that the last wake-up came late
   QueuedMotion* motion_ = nullptr;
+  /// The last setpoint is out. The run ends with the exchange after it, which measures where that
+  /// setpoint has brought the arm.
+  bool arriving_ = false;
   std::uint64_t cycle_of_run_ = 0;
   Setpoint setpoint_;
   Measurement measurement_;

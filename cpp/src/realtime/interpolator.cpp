@@ -80,6 +80,19 @@ RunState Interpolator::tick(Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKING {
   return run_state_;
 }
 
+void Interpolator::describe(const Setpoint& setpoint,
+                            LogRecord& record) const noexcept VIAPOINT_NONBLOCKING {
+  record.nominal_time = nominal_time();
+  record.rate = rate();
+  record.move = move();
+  record.state = state();
+  record.outputs = setpoint.outputs;
+  record.q = setpoint.q;
+  record.qd = setpoint.qd;
+  record.qdd = setpoint.qdd;
+  record.qddd = setpoint.qddd;
+}
+
 RunState Interpolator::classify() const noexcept {
   if (now_.tau >= motion_->duration()) return RunState::kFinished;
   const bool at_rest = now_.rate == 0.0 && !governor_.changing();

@@ -79,17 +79,10 @@ std::vector<LogRecord> simulate(const Trajectory& trajectory, const JointLimits&
     }
     Setpoint setpoint;
     LogRecord record;
-    record.state = interpolator.tick(setpoint);
+    interpolator.tick(setpoint);
+    interpolator.describe(setpoint, record);
     record.cycle = k;
     record.stamp = static_cast<std::int64_t>(k) * cycle.count();
-    record.nominal_time = interpolator.nominal_time();
-    record.rate = interpolator.rate();
-    record.move = interpolator.move();
-    record.outputs = setpoint.outputs;
-    record.q = setpoint.q;
-    record.qd = setpoint.qd;
-    record.qdd = setpoint.qdd;
-    record.qddd = setpoint.qddd;
     log.push_back(record);
     if (record.state == RunState::kPaused && next == commands.end()) break;
   }

@@ -50,6 +50,8 @@ struct DriveHistory {
   std::atomic<int> enabled{0}, released{0};
   std::atomic<bool> failing{false};
   std::atomic<std::uint64_t> exchanges{0};
+  /// Fails once it is told the same place twice, away from where it began.
+  bool fails_at_rest = false;
   JointVector last_qd;  ///< of the last setpoint; read after the loop has gone
 };
 
@@ -66,6 +68,9 @@ class WatchedDrive final : public Drive {
     ++history_->exchanges;
     history_->last_qd = setpoint.qd;
     if (history_->failing) return DriveStatus::kFault;
+    const bool told_again = setpoint.q == told_ && !told_.isZero(0.0);
+    if (history_->fails_at_rest && told_again) return DriveStatus::kFault;
+    told_ = setpoint.q;
     return arm_.exchange(setpoint, measurement);
   }
   void release() noexcept override { ++history_->released; }
@@ -74,6 +79,7 @@ class WatchedDrive final : public Drive {
  private:
   std::shared_ptr<DriveHistory> history_;
   SimulatedDrive arm_;
+  JointVector told_ = JointVector::Zero(2);
 };
 
 TEST(ControllerLoop, RunsAMotionAndLogsEveryCycle) {
@@ -120,6 +126,40 @@ TEST(ControllerLoop, GivesTheSetpointsOfASimulatedRunToTheLastBit) {
     ASSERT_EQ(log[k].qddd, simulated[k].qddd);
     ASSERT_EQ(log[k].nominal_time, simulated[k].nominal_time);
   }
+}
+
+TEST(ControllerLoop, TheEndIsMeasuredWhenTheRunHasEnded) {
+  const auto loop = virtual_loop();
+  double from = 0.0;
+  for (int i = 0; i < 200; ++i) {
+    SCOPED_TRACE(i);
+    const bool stops = i % 2 == 1;
+    const auto job = loop->run(move_by(from < 0.5 ? 1.0 : 0.0, kLimits, from));
+    if (stops) job->stop();
+    while (job->state() != RunState::kFinished && job->state() != RunState::kStopped) {
+      std::this_thread::yield();
+    }
+    const JointVector measured = loop->measured().q;
+    ASSERT_TRUE(job->wait(20.0));
+    ASSERT_EQ(measured, job->log().back().q) << "the state told the end too early";
+    ASSERT_EQ(loop->measured().q, loop->position());
+    from = measured[0];
+  }
+}
+
+TEST(ControllerLoop, ADriveThatFailsWithTheEndPointOnItsWayFailsTheRun) {
+  const auto history = std::make_shared<DriveHistory>();
+  history->fails_at_rest = true;
+  const auto loop = virtual_loop(std::make_unique<WatchedDrive>(history));
+  const auto trajectory = move_by(0.1, kLimits);
+  const auto job = loop->run(trajectory);
+  EXPECT_EQ(code_of([&] { job->wait(20.0); }), ErrorCode::kDriveFault);
+  EXPECT_EQ(job->state(), RunState::kFault);
+  const auto log = job->log();
+  ASSERT_GE(log.size(), 2U);
+  EXPECT_EQ(log.back().state, RunState::kFault);
+  EXPECT_EQ(log[log.size() - 2].state, RunState::kFinished);
+  EXPECT_EQ(job->nominal_time(), trajectory->duration());
 }
 
 TEST(ControllerLoop, RefusesWhatMustNotRunBeforeAnythingMoves) {

@@ -38,7 +38,8 @@ struct RunReport {
 class Job {
  public:
   virtual ~Job() = default;
-  /// True when the run ended within `timeout` [s]. @throws MotionError(kDriveFault) on a fault
+  /// True when the run ended within `timeout` [s]: when the drive has measured the cycle after the
+  /// last setpoint was sent. @throws MotionError(kDriveFault) on a fault
   virtual bool wait(double timeout) = 0;
   virtual void pause() = 0;
   virtual void resume() = 0;

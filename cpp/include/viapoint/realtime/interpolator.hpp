@@ -46,8 +46,13 @@ class Interpolator {
   void abandon() noexcept VIAPOINT_NONBLOCKING;
 
   /// One cycle: fills in the setpoint due now and moves on. Returns the state it belongs to:
-  /// kFinished with the end point, kStopped with the first setpoint at rest after a stop.
+  /// kFinished with the end point, kStopped with the first setpoint at rest after a stop. Without a
+  /// motion it holds the position and returns the last state again.
   RunState tick(Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKING;
+
+  /// Fills in of `record` what the last tick, which gave `setpoint`, decided: all but the cycle,
+  /// the clock's figures and the measurement.
+  void describe(const Setpoint& setpoint, LogRecord& record) const noexcept VIAPOINT_NONBLOCKING;
 
   /// True from begin() until a tick has returned kFinished or kStopped.
   [[nodiscard]] bool active() const noexcept { return motion_ != nullptr; }
