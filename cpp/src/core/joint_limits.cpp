@@ -9,6 +9,10 @@
 namespace viapoint {
 namespace {
 
+// Beyond these, products of a few limits leave the range in which doubles are exact.
+constexpr double kLeastRate = 1e-9;
+constexpr double kMostRate = 1e12;
+
 [[noreturn]] void refuse(int joint, const char* what, double value, const std::string& expected) {
   std::ostringstream text;
   text << what << " of joint " << joint + 1 << " is " << value << "; " << expected;
@@ -29,8 +33,9 @@ void require_size(Eigen::Index size, Eigen::Index joints, const char* what) {
 
 void require_rates(const JointVector& rates, const char* what) {
   for (int i = 0; i < rates.size(); ++i) {
-    if (!(rates[i] > 0.0) || !std::isfinite(rates[i])) {
-      refuse(i, what, rates[i], "it must be positive and finite [rad or m, per s, s² or s³]");
+    if (!(rates[i] >= kLeastRate && rates[i] <= kMostRate)) {
+      refuse(i, what, rates[i],
+             "it must be positive and finite, between 1e-9 and 1e12 [rad or m, per s, s² or s³]");
     }
   }
 }

@@ -17,6 +17,11 @@ std::optional<double> smaller(const std::optional<double>& a, const std::optiona
   return std::min(*a, *b);
 }
 
+/// In a corner the wishes of both legs count.
+ToolWishes both(const ToolWishes& a, const ToolWishes& b) {
+  return {smaller(a.speed, b.speed), smaller(a.acceleration, b.acceleration)};
+}
+
 /// True when the blend keeps position and coupled limits all the way. Legs inside the limits do
 /// not imply it: a corner bulges out where a leg is curved.
 bool keeps_limits(const JointPiece& blend, const JointLimits& limits) {
@@ -25,22 +30,18 @@ bool keeps_limits(const JointPiece& blend, const JointLimits& limits) {
 
 }  // namespace
 
-Corner fit_corner(const RobotModel& robot, const JointPath& before, const Leg& after,
-                  const MoveOptions& options, double room_before, double room_after) {
+Corner fit_corner(const RobotModel& robot, const Leg& before, const JointPath& tail,
+                  const Leg& after, double room_before, double room_after) {
   const ForwardKinematics* arm = robot.has_kinematics() ? &robot.forward() : nullptr;
-  Zone zone = options.zone;
+  Zone zone = before.options.zone;
   Corner corner;
   for (int attempt = 0; attempt < kShrinks; ++attempt) {
-    corner = round_corner(arm, before, after.path, zone, room_before, room_after);
+    corner = round_corner(arm, tail, after.path, zone, room_before, room_after);
     if (!corner.possible) return corner;
     if (keeps_limits(corner.blend, robot.limits())) {
       if (attempt > 0) corner.reason = "a larger corner leaves the joint limits";
-      corner.blend.scale =
-          std::min(before.pieces().back().scale, after.path.pieces().front().scale);
-      if (arm != nullptr)
-        limit_tool(robot, corner.blend,
-                   {smaller(options.speed, after.options.speed),
-                    smaller(options.acceleration, after.options.acceleration)});
+      corner.blend.scale = std::min(tail.pieces().back().scale, after.path.pieces().front().scale);
+      if (arm != nullptr) limit_tool(robot, corner.blend, both(before.wishes(), after.wishes()));
       return corner;
     }
     zone.size *= 0.5;

@@ -8,9 +8,10 @@
 
 namespace viapoint::planning {
 
-/// @param before the leg that arrives, in the section's scale of s; @param after the one that
-/// leaves, in its own. @param room_before, room_after what may be cut off each, in its own s
-[[nodiscard]] Corner fit_corner(const RobotModel& robot, const JointPath& before, const Leg& after,
-                                const MoveOptions& options, double room_before, double room_after);
+/// @param before the leg that arrives; @param tail what is left of it, in the section's scale of s
+/// @param after the leg that leaves, in its own scale
+/// @param room_before, room_after what may be cut off tail and after, each in its own s
+[[nodiscard]] Corner fit_corner(const RobotModel& robot, const Leg& before, const JointPath& tail,
+                                const Leg& after, double room_before, double room_after);
 
 }  // namespace viapoint::planning

@@ -12,6 +12,10 @@ namespace viapoint::planning {
 namespace {
 
 constexpr int kOutputs = 64;
+/// Speed [m/s], acceleration [m/s²] and scale: below this a move takes for ever, above nothing is
+/// limited.
+constexpr double kLeastWish = 1e-6;
+constexpr double kMostWish = 1e9;
 
 class Walk {
  public:
@@ -52,7 +56,7 @@ class Walk {
           "a wait of " + std::to_string(wait.seconds) + " s; it must be zero or more and finite");
       return;
     }
-    outputs_here_ = 0;
+    if (wait.seconds >= kShortestWait) outputs_here_ = 0;
     itinerary_.items.emplace_back(Dwell{step_, wait.seconds});
   }
 
@@ -154,18 +158,16 @@ class Walk {
 
   bool options_are_sound(const MoveOptions& options) {
     const size_t before = itinerary_.report.problems.size();
-    const auto positive = [&](const std::optional<double>& wish, const char* name) {
-      if (wish && (!(*wish > 0.0) || !std::isfinite(*wish))) {
-        add(ErrorCode::kBadArgument, std::string(name) + " is " + std::to_string(*wish) +
-                                         "; it must be above zero and finite");
-      }
+    const auto within = [&](const std::optional<double>& wish, const char* name, double most) {
+      if (!wish || (*wish >= kLeastWish && *wish <= most)) return;
+      char text[128];
+      std::snprintf(text, sizeof text, "%s is %g; it must be at least %g and at most %g", name,
+                    *wish, kLeastWish, most);
+      add(ErrorCode::kBadArgument, text);
     };
-    positive(options.speed, "speed");
-    positive(options.acceleration, "acceleration");
-    if (options.scale && !(*options.scale > 0.0 && *options.scale <= 1.0)) {
-      add(ErrorCode::kBadArgument,
-          "scale is " + std::to_string(*options.scale) + "; it must be above 0 and at most 1");
-    }
+    within(options.speed, "speed", kMostWish);
+    within(options.acceleration, "acceleration", kMostWish);
+    within(options.scale, "scale", 1.0);
     if (!(options.zone.size >= 0.0) || !std::isfinite(options.zone.size)) {
       add(ErrorCode::kBadArgument,
           "zone is " + std::to_string(options.zone.size) + "; it must be zero or more and finite");

@@ -16,6 +16,9 @@ struct Dwell {
   int step = 0;
   double seconds = 0.0;
 };
+/// A shorter wait is a stop and nothing else [s].
+inline constexpr double kShortestWait = 1e-9;
+
 struct Output {
   int step = 0;
   OutputChange change;

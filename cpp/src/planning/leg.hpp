@@ -2,6 +2,7 @@
 /// One move as geometry, before corners and time.
 #pragma once
 
+#include "planning/tool_limits.hpp"
 #include "viapoint/path/joint_path.hpp"
 #include "viapoint/program/motion_program.hpp"
 
@@ -15,6 +16,11 @@ struct Leg {
   JointPath path;     ///< from start to goal; pieces carry scale, speed wishes and step
   MoveOptions options;
   bool cartesian = false;
+  /// What the program wishes of the tool; of no meaning in joint space.
+  [[nodiscard]] ToolWishes wishes() const {
+    return cartesian ? ToolWishes{options.speed, options.acceleration} : ToolWishes{};
+  }
+
   double position_deviation = 0.0;  ///< proven, from the wanted curve [m]
   double angle_deviation = 0.0;     ///< [rad]
 };

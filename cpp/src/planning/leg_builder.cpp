@@ -152,6 +152,10 @@ Leg LegBuilder::lin(const LinMove& move, const JointVector& start) const {
   const Pose from = robot_.forward().pose(start);
   const Pose to = pose_of(move.target, start);
   const bool fixed = move.orientation == Orientation::kFixed || free_orientation;
+  const double turn = fixed ? 0.0 : rotation_distance(from.linear(), to.linear());
+  if ((to.translation() - from.translation()).norm() < kNowhere && turn < kNowhere) {
+    throw MotionError(ErrorCode::kZeroLength, "the move goes nowhere: the tool is already there");
+  }
   const LineCurve curve =
       fixed ? LineCurve::fixed_orientation(from, to.translation()) : LineCurve(from, to);
   if (curve.half_turn()) {
@@ -217,6 +221,15 @@ Leg LegBuilder::lin_by_wrist(const Target& target, const JointVector& start) con
 
   const Eigen::Vector3d goal = pose_of(target, start).translation();
   const LineCurve curve = LineCurve::fixed_orientation(robot_.forward().pose(start), goal);
+  if ((goal - robot_.forward().pose(start).translation()).norm() < kNowhere) {
+    if ((ends.front() - start).cwiseAbs().maxCoeff() < kNowhere) {
+      throw MotionError(ErrorCode::kZeroLength, "the move goes nowhere: the tool is already there");
+    }
+    throw MotionError(
+        ErrorCode::kBadArgument,
+        "orientation=\"wrist\" moves the tool on a line, and this target only turns it",
+        {"movel(..., orientation=\"least\")", "movej(...)"});
+  }
   std::optional<MotionError> first;
   for (const JointVector& end : ends) {
     InsertionOptions how;
@@ -244,7 +257,7 @@ void LegBuilder::apply(Leg& leg, const MoveOptions& options, int step) const {
   for (JointPiece piece : leg.path.pieces()) {
     piece.move = step;
     piece.scale = options.scale.value_or(1.0);
-    if (leg.cartesian) limit_tool(robot_, piece, {options.speed, options.acceleration});
+    if (leg.cartesian) limit_tool(robot_, piece, leg.wishes());
     path.append(std::move(piece));
   }
   leg.path = std::move(path);

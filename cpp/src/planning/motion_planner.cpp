@@ -38,13 +38,14 @@ void attach_outputs(std::vector<TrajectoryPiece>& pieces, const std::vector<Outp
                     const JointVector& end) {
   size_t next = 0;
   for (TrajectoryPiece& piece : pieces) {
-    while (next < outputs.size() && outputs[next].step < piece.move) {
+    while (next < outputs.size() && outputs[next].step < piece.move &&
+           piece.outputs < kMaxOutputsAPiece) {
       piece.output[static_cast<size_t>(piece.outputs++)] = outputs[next++].change;
     }
   }
   if (next == outputs.size()) return;
   TrajectoryPiece last = rest_at(end, kLastOutputs, outputs.back().step);
-  while (next < outputs.size()) {
+  while (next < outputs.size() && last.outputs < kMaxOutputsAPiece) {
     last.output[static_cast<size_t>(last.outputs++)] = outputs[next++].change;
   }
   pieces.push_back(last);
@@ -86,7 +87,8 @@ class Composer {
         at = leg->goal;
       } else if (const auto* dwell = std::get_if<Dwell>(&item)) {
         flush_legs();
-        if (dwell->seconds > 0.0) pieces_.push_back(rest_at(at, dwell->seconds, dwell->step));
+        if (dwell->seconds >= planning::kShortestWait)
+          pieces_.push_back(rest_at(at, dwell->seconds, dwell->step));
       } else {
         outputs_.push_back(std::get<Output>(item));
       }
@@ -97,9 +99,20 @@ class Composer {
   }
 
  private:
+  /// A fault of the timing says at least where its stretch of motion begins.
+  std::vector<Section> sections() const {
+    try {
+      return planning::build_sections(robot_, legs_);
+    } catch (const MotionError& error) {
+      Problem problem = error.problem();
+      planning::locate(problem, program_, legs_.front().step);
+      throw MotionError(std::move(problem));
+    }
+  }
+
   void flush_legs() {
     if (legs_.empty()) return;
-    for (Section& section : planning::build_sections(robot_, legs_)) {
+    for (const Section& section : sections()) {
       pieces_.insert(pieces_.end(), section.pieces.begin(), section.pieces.end());
       motion_.corners.insert(motion_.corners.end(), section.corners.begin(), section.corners.end());
     }
@@ -118,7 +131,13 @@ class Composer {
       planning::locate(problem, program_, corner.move);
       motion_.report.problems.push_back(std::move(problem));
     }
-    if (pieces_.empty()) return std::move(motion_);  // waits of no length only
+    if (pieces_.empty()) {
+      Problem problem;
+      problem.code = ErrorCode::kEmptyProgram;
+      problem.message = "the program does nothing: its only steps are waits of no length";
+      motion_.report.problems.push_back(std::move(problem));
+      return std::move(motion_);
+    }
     const double manipulability = least_manipulability(robot_, pieces_);
     motion_.trajectory = Trajectory(std::move(pieces_), robot_.limits());
     Certificate& certificate = motion_.trajectory.certificate();

@@ -43,7 +43,7 @@ class Builder {
     const double room_before = kShareTowardsStop * tail_.length();
     const double room_after =
         (has_corner_after(i + 1) ? kShareBetweenCorners : kShareTowardsStop) * after.path.length();
-    Corner corner = fit_corner(robot_, tail_, after, legs_[i].options, room_before, room_after);
+    Corner corner = fit_corner(robot_, legs_[i], tail_, after, room_before, room_after);
     CornerOutcome outcome;
     outcome.move = legs_[i].step;
     outcome.asked = legs_[i].options.zone;

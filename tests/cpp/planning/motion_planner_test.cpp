@@ -264,6 +264,103 @@ TEST_F(PumaPlanner, RefusesATimedMoveAmongOthers) {
   EXPECT_FALSE(planner_.check(program.program()).ok());
 }
 
+TEST_F(PumaPlanner, RefusesMoreOutputsAtAPointThanAPieceCarries) {
+  Script program = script(puma_a());
+  for (int round = 0; round < 100; ++round) {
+    for (int i = 0; i < kMaxOutputsAPiece; ++i) program.add(SetOutput{i, true});
+    program.add(Wait{0.0});  // a stop, not a pause: no cycle passes in it
+  }
+  program.movej(puma_b());
+  const Report report = planner_.check(program.program());
+  const Problem* problem = find(report, ErrorCode::kBadArgument);
+  ASSERT_NE(problem, nullptr) << report.describe();
+  EXPECT_EQ(problem->line, kMaxOutputsAPiece + 2);
+}
+
+TEST_F(PumaPlanner, RefusesWishesTooSmallToMean) {
+  for (const double tiny : {0.0, 1e-300, 1e-7, -1.0, std::nan("")}) {
+    SCOPED_TRACE(tiny);
+    MoveOptions options[3];
+    options[0].speed = tiny;
+    options[1].acceleration = tiny;
+    options[2].scale = tiny;
+    for (const MoveOptions& wish : options) {
+      Script program = script(puma_a());
+      program.add(LinMove{PoseTarget{pose(puma_b())}, Orientation::kLeast}, wish);
+      const Report report = planner_.check(program.program());
+      const Problem* problem = find(report, ErrorCode::kBadArgument);
+      ASSERT_NE(problem, nullptr);
+      EXPECT_EQ(problem->line, 1);
+    }
+  }
+}
+
+TEST_F(PumaPlanner, DoesNotLetAToolSpeedSlowJointMoves) {
+  MoveOptions wish;
+  wish.speed = 0.001;
+  wish.zone = {ZoneKind::kRadius, 0.02};
+  Script slow = script(puma_a());
+  slow.add(PtpMove{JointTarget{puma_b()}}, wish).add(PtpMove{JointTarget{puma_c()}}, wish);
+  Script free = script(puma_a());
+  free.movej(puma_b(), wish.zone).movej(puma_c());
+  const PlannedMotion a = planner_.plan(slow.program());
+  const PlannedMotion b = planner_.plan(free.program());
+  EXPECT_FALSE(a.corners.at(0).stopped) << a.corners[0].reason;
+  EXPECT_DOUBLE_EQ(a.trajectory.duration(), b.trajectory.duration());
+}
+
+TEST_F(PumaPlanner, LeavesOutLinesThatGoNowhereAndRefusesWristTurnsOnTheSpot) {
+  Script program = script(puma_a());
+  program.add(LinMove{PositionTarget{pose(puma_a()).translation()}, Orientation::kLeast});
+  program.add(LinMove{PoseTarget{pose(puma_a())}, Orientation::kFixed});
+  program.movel(pose(puma_a()), {}, Orientation::kWrist).movej(puma_b());
+  const PlannedMotion motion = planner_.plan(program.program());
+  ASSERT_EQ(motion.report.problems.size(), 3U) << motion.report.describe();
+  for (const Problem& problem : motion.report.problems) {
+    EXPECT_EQ(problem.code, ErrorCode::kZeroLength);
+    EXPECT_TRUE(problem.line.has_value());
+  }
+
+  Pose turned = pose(puma_a());
+  turned.linear() *= Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  Script turn = script(puma_a());
+  turn.movel(turned, {}, Orientation::kWrist);
+  const Report report = planner_.check(turn.program());
+  EXPECT_NE(find(report, ErrorCode::kBadArgument), nullptr) << report.describe();
+}
+
+TEST_F(PumaPlanner, TurnsOnTheSpotWhateverTheToolSpeed) {
+  // Speed is that of the tool point: it says nothing of a turn about it, nor of one with a travel
+  // far below what can be measured.
+  const auto duration = [&](double travel) {
+    Pose turned = pose(puma_a());
+    turned.linear() *= Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    turned.translation().z() += travel;
+    MoveOptions slow;
+    slow.speed = 0.01;
+    Script program = script(puma_a());
+    program.add(LinMove{PoseTarget{turned}, Orientation::kLeast}, slow);
+    return planner_.plan(program.program()).trajectory.duration();
+  };
+  const double still = duration(0.0);
+  EXPECT_LT(still, 1.0);
+  for (const double travel : {1e-10, 1e-9, 1e-8})
+    EXPECT_NEAR(duration(travel), still, 0.05 * still);
+}
+
+TEST_F(PumaPlanner, FindsThatWaitsOfNoLengthAreNoProgram) {
+  Script program = script(puma_a());
+  program.add(Wait{0.0}).add(Wait{1e-320});
+  EXPECT_NE(find(planner_.check(program.program()), ErrorCode::kEmptyProgram), nullptr);
+}
+
+TEST_F(PumaPlanner, RefusesTolerancesBelowRounding) {
+  Script program = script(puma_a());
+  program.movej(puma_b());
+  program.program().tolerance.position = 1e-15;
+  EXPECT_NE(find(planner_.check(program.program()), ErrorCode::kBadArgument), nullptr);
+}
+
 TEST(JointRobotPlanner, MovesJointsAndRefusesLines) {
   JointLimits limits;
   limits.position_min = JointVector::Constant(2, -INFINITY);
