@@ -161,12 +161,19 @@ AxisProblem::Chain AxisProblem::chain_of(bool upward, const UpwardMember& m) con
 
 /// What is known without integration takes the place of the integrated.
 void AxisProblem::append(const Chain& chain, AxisMove& move) noexcept {
-  for (int i = 0; i < chain.size; ++i) {
+  if (chain.size == 0) return;
+  move.append(chain.links[0].jerk, chain.links[0].duration);  // may prolong the brake's last
+  AxisState state = move.end;
+  for (int i = 1; i < chain.size; ++i) {
     const auto& [duration, jerk, qdd] = chain.links[static_cast<size_t>(i)];
-    if (i > 0) move.end.qdd = qdd;
-    if (i == chain.cruise) move.end.qd = chain.top;
-    move.append(jerk, duration);
+    state.qdd = qdd;
+    state.qddd = jerk;
+    if (i == chain.cruise) state.qd = chain.top;
+    move.phase[static_cast<size_t>(move.phases++)] = {duration, state};
+    move.total += duration;
+    state = advanced(state, jerk, duration);
   }
+  move.end = state;
 }
 
 void AxisProblem::append_velocity_change(AxisMove& move) noexcept {

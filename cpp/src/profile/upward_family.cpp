@@ -197,7 +197,7 @@ UpwardMember UpwardFamily::lasting(double duration) const noexcept {
 bool UpwardFamily::reach(double gain, const UpwardMember& from,
                          UpwardMember& found) const noexcept {
   if (has_monotone_ && from.inner < monotone_end_) {
-    if (reach_monotone(gain, from.inner, found)) return true;
+    if (reach_monotone(gain, from, found)) return true;
     if (has_gap_) return false;
   } else if (has_gap_ && from.inner < 0.0) {
     return false;
@@ -206,7 +206,7 @@ bool UpwardFamily::reach(double gain, const UpwardMember& from,
   return true;
 }
 
-bool UpwardFamily::reach_monotone(double gain, double from_inner,
+bool UpwardFamily::reach_monotone(double gain, const UpwardMember& from,
                                   UpwardMember& found) const noexcept {
   // The gain over the duration is monotone between the zeros of its slope w.
   std::array<double, 6> stops{};
@@ -215,17 +215,17 @@ bool UpwardFamily::reach_monotone(double gain, double from_inner,
   const double cap = outer_.cap;
   const double held_until = cap * cap > k_ ? -std::sqrt(cap * cap - k_) : 0.0;
   const double end = monotone_end_;
-  if (from_inner < held_until) {
+  if (from.inner < held_until) {
     const double until = std::min(held_until, end);
     if (roots(half_, 0.5 * cap * per_down_, inner_.v, zeros)) {
       for (const double x : zeros) {
-        if (x > from_inner && x < until) stops[count++] = x;
+        if (x > from.inner && x < until) stops[count++] = x;
       }
     }
     stops[count++] = until;
   }
   if (held_until < end) {
-    const double begin = std::max(from_inner, held_until);
+    const double begin = std::max(from.inner, held_until);
     const double beta = 0.75 * cubic_;
     const double gamma = (half_ * half_ - beta) * k_ * k_;
     if (roots(beta, half_ * (outer_.v + inner_.v), gamma, zeros)) {
@@ -239,27 +239,30 @@ bool UpwardFamily::reach_monotone(double gain, double from_inner,
     stops[count++] = end;
   }
 
-  double low = from_inner;
+  double low = from.inner, low_gain = from.gain;
   for (size_t i = 0; i < count; ++i) {
     double high = stops[i];
     UpwardMember m = of_inner(high);
     if (m.gain < gain) {
       low = high;
+      low_gain = m.gain;
       continue;
     }
-    double x = 0.5 * (low + high);
+    double x = low + (high - low) * (gain - low_gain) / (m.gain - low_gain);
+    if (!(x >= low && x <= high)) x = 0.5 * (low + high);
     for (int step = 0; step < kMostSteps; ++step) {
       m = of_inner(x);
-      (m.gain < gain ? low : high) = x;
+      const double error = gain - m.gain;
+      if (std::abs(error) <= kPolished * std::abs(gain)) break;
+      (error > 0.0 ? low : high) = x;
       const double slope = 2.0 * half_ * (1.0 + x / m.outer) *
                            (inner_.v + half_ * x * x + 0.5 * per_down_ * m.outer * x);
-      double next = slope > 0.0 ? x + (gain - m.gain) / slope : low;
+      double next = slope > 0.0 ? x + error / slope : low;
       if (!(next > low && next < high)) next = 0.5 * (low + high);
-      const bool done = std::abs(next - x) <= kConverged * std::abs(x);
+      if (std::abs(next - x) <= kConverged * std::abs(x)) break;
       x = next;
-      if (done) break;
     }
-    found = of_inner(x);
+    found = m;
     return true;
   }
   return false;

@@ -99,7 +99,7 @@ class UpwardFamily {
   [[nodiscard]] UpwardMember of_sum(double sum) const noexcept;
   /// By the top velocity less inner_.v.
   [[nodiscard]] UpwardMember of_excess(double excess) const noexcept;
-  [[nodiscard]] bool reach_monotone(double gain, double from_inner,
+  [[nodiscard]] bool reach_monotone(double gain, const UpwardMember& from,
                                     UpwardMember& found) const noexcept;
   /// From a member whose inner peak is not negative on. @pre from.gain <= gain
   [[nodiscard]] UpwardMember reach_from(double gain, const UpwardMember& from) const noexcept;

@@ -252,6 +252,57 @@ TEST(StateToState, NamesTheAxisThatRefuses) {
   EXPECT_EQ(motion.plan(all.start, all.end, all.limits, options), MoveStatus::kDurationImpossible);
 }
 
+/// Plans anew in every cycle from where the last plan is by then.
+TEST(StateToState, FollowsATargetThatChangesInEveryCycle) {
+  constexpr double kCycle = 0.002;
+  int arrived = 0;
+  for (int seed = 0; seed < 20; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937_64 random(static_cast<std::uint64_t>(seed));
+    Requests all;
+    for (int i = 0; i < 3; ++i) all.add({{}, {}, testing::random_request(random, 0.5).limits});
+    StateToState motion;
+    for (int cycle = 0; cycle < 2000; ++cycle) {
+      for (size_t i = 0; i < 3; ++i) {
+        if (cycle == 1000) all.end[i].q = uniform(random, -1.0, 1.0);
+        if (cycle < 1000) all.end[i].q = uniform(random, -1.0, 1.0);
+      }
+      ASSERT_EQ(motion.plan(all.start, all.end, all.limits), MoveStatus::kSolved);
+      for (size_t i = 0; i < 3; ++i) {
+        expect_limits(all.axis(i), motion.axis(static_cast<int>(i)));
+        all.start[i] = motion.axis(static_cast<int>(i)).at(kCycle);
+      }
+      if (HasFailure()) return;
+    }
+    // 2 s after the last change some have arrived, and where they have, they rest.
+    if (motion.duration() > kCycle) continue;
+    ++arrived;
+    for (size_t i = 0; i < 3; ++i) {
+      EXPECT_EQ(all.start[i].q, all.end[i].q);
+      EXPECT_EQ(all.start[i].qd, 0.0);
+      EXPECT_EQ(all.start[i].qdd, 0.0);
+    }
+  }
+  EXPECT_GT(arrived, 0);
+}
+
+TEST(StateToState, DoesNotSwingAroundATargetThatIsNoisy) {
+  constexpr double kCycle = 0.002, kNoise = 1e-7;
+  std::mt19937_64 random(3);
+  Requests all;
+  for (int i = 0; i < 3; ++i) all.add({{}, {}, kPlain});
+  StateToState motion;
+  for (int cycle = 0; cycle < 20000; ++cycle) {
+    for (size_t i = 0; i < 3; ++i) all.end[i].q = uniform(random, -kNoise, kNoise);
+    ASSERT_EQ(motion.plan(all.start, all.end, all.limits), MoveStatus::kSolved);
+    for (size_t i = 0; i < 3; ++i) {
+      all.start[i] = motion.axis(static_cast<int>(i)).at(kCycle);
+      // Full jerk takes (32·2e-7/10)^(1/3) = 9 ms for the noise: it is not left by much.
+      ASSERT_LE(std::abs(all.start[i].q), 5.0 * kNoise);
+    }
+  }
+}
+
 TEST(StateToState, ServesAsManyAxesAsAnArmMayHave) {
   std::mt19937_64 random(2);
   const Requests all = random_requests(random, kMaxJoints);
