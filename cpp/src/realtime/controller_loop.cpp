@@ -49,6 +49,10 @@ std::unique_ptr<Drive> checked(std::unique_ptr<Drive> drive, const JointLimits& 
         ErrorCode::kBadArgument,
         "the cycle is " + std::to_string(options.cycle.count()) + " ns; it must be positive");
   }
+  if (options.log_records == 0) {
+    throw MotionError(ErrorCode::kBadArgument,
+                      "the log is to keep 0 records; at least 1 is needed");
+  }
   return drive;
 }
 
@@ -58,6 +62,7 @@ struct ControllerLoop::Impl {
   Impl(std::unique_ptr<Drive> drive, const JointLimits& joint_limits, const LoopOptions& options,
        std::unique_ptr<Clock> loop_clock)
       : limits(joint_limits),
+        log_records(options.log_records),
         powered(checked(std::move(drive), joint_limits, options)),
         clock(std::move(loop_clock)),
         channels(limits.joints()),
@@ -126,6 +131,7 @@ struct ControllerLoop::Impl {
   }
 
   JointLimits limits;
+  std::size_t log_records;
   PoweredDrive powered;
   std::unique_ptr<Clock> clock;
   LoopChannels channels;
@@ -158,7 +164,7 @@ std::shared_ptr<Job> ControllerLoop::run(std::shared_ptr<const Trajectory> traje
                       {"wait for its end", "stop it first"});
   }
   admit(*trajectory, impl_->limits, position());
-  auto job = std::make_shared<LoopJob>(std::move(trajectory));
+  auto job = std::make_shared<LoopJob>(std::move(trajectory), impl_->log_records);
   {
     const std::lock_guard job_lock(impl_->job_mutex);
     impl_->job = job;

@@ -10,6 +10,9 @@ constexpr double kEndSlack = 1e-9;
 /// New cells of the look-ahead a cycle: two are used up at full rate, the rest fills the window in
 /// the first half second.
 constexpr int kCellsACycle = 8;
+/// And pieces looked at for them, which is what bounds a tick: of a motion that passes over more in
+/// a cycle the future stays unknown, and its rate is left as it is until they get sparser.
+constexpr int kPiecesACycle = 256;
 
 }  // namespace
 
@@ -24,7 +27,6 @@ Interpolator::Interpolator(const JointLimits& limits, std::chrono::nanoseconds c
 
 void Interpolator::begin(const Trajectory& motion) noexcept VIAPOINT_NONBLOCKING {
   motion_ = &motion;
-  piece_ = 0;
   wish_ = Wish::kRun;
   // At rest any rate is as good as any other: the motion starts at the one wanted.
   now_ = {0.0, override_, 0.0};
@@ -33,7 +35,8 @@ void Interpolator::begin(const Trajectory& motion) noexcept VIAPOINT_NONBLOCKING
   governor_.reset();
   lookahead_.begin(motion);
   run_state_ = RunState::kRunning;
-  apply_outputs(motion.pieces().front());
+  outputs_before_ = outputs_;
+  enter_piece(0);
 }
 
 void Interpolator::set_override(double share) noexcept VIAPOINT_NONBLOCKING {
@@ -68,7 +71,7 @@ RunState Interpolator::tick(Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKING {
     since_anchor_ = 0;
   }
 
-  lookahead_.advance(now_.tau, kCellsACycle);
+  lookahead_.advance(now_.tau, kCellsACycle, kPiecesACycle);
   const double curvature = governor_.decide(now_, target(), lookahead_);
   evaluate(curvature, setpoint);
   run_state_ = classify();
@@ -127,23 +130,13 @@ void Interpolator::move_on() noexcept VIAPOINT_NONBLOCKING {
     now_.tau = anchor_ + static_cast<double>(since_anchor_) * cycle_ * now_.rate;
   }
   if (now_.tau > motion_->duration() - kEndSlack) now_.tau = motion_->duration();
-  enter_pieces();
+  enter_piece(motion_->piece_at(now_.tau));
 }
 
-void Interpolator::enter_pieces() noexcept VIAPOINT_NONBLOCKING {
-  const auto& pieces = motion_->pieces();
-  while (piece_ + 1 < pieces.size() && motion_->start_of(piece_ + 1) <= now_.tau) {
-    apply_outputs(pieces[++piece_]);
-  }
-}
-
-void Interpolator::apply_outputs(const TrajectoryPiece& piece) noexcept VIAPOINT_NONBLOCKING {
-  for (int i = 0; i < std::min(piece.outputs, kMaxOutputsAPiece); ++i) {
-    const OutputChange& change = piece.output[static_cast<std::size_t>(i)];
-    if (change.index < 0 || change.index >= 64) continue;
-    const std::uint64_t bit = std::uint64_t{1} << change.index;
-    outputs_ = change.value ? outputs_ | bit : outputs_ & ~bit;
-  }
+void Interpolator::enter_piece(std::size_t piece) noexcept VIAPOINT_NONBLOCKING {
+  piece_ = piece;
+  const OutputEffect& effect = motion_->outputs_after(piece);
+  outputs_ = (outputs_before_ & ~effect.changed) | effect.on;
 }
 
 }  // namespace viapoint

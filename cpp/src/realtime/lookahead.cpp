@@ -1,17 +1,15 @@
 #include "viapoint/realtime/lookahead.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace viapoint {
 namespace {
 
-/// A parabola exceeds the hull of three equidistant samples by at most 1/8 of their second
-/// difference; twice that is allowed for.
-constexpr double kCurvatureMargin = 0.25;
-/// And this much of the hull and of the limit for what is no parabola.
-constexpr double kHullMargin = 0.02;
-constexpr double kLimitMargin = 1e-3;
+/// Rounding in what a polynomial gives, relative to the limit: far more than it takes, and far
+/// below the governor's own slack.
+constexpr double kRounding = 1e-10;
 
 constexpr Range kNothing{1e300, -1e300};
 
@@ -20,13 +18,62 @@ void include(Range& range, const Range& other) noexcept {
   range.high = std::max(range.high, other.high);
 }
 
-/// Bound on a smooth quantity with samples f at the start, in the middle and at the end.
-Range bound(double start, double middle, double end, double limit, double limit_margin) noexcept {
-  const double low = std::min({start, middle, end});
-  const double high = std::max({start, middle, end});
-  const double margin = kCurvatureMargin * std::abs(start - 2.0 * middle + end) +
-                        kHullMargin * (high - low) + limit_margin * limit;
-  return {std::max(low - margin, -limit), std::min(high + margin, limit)};
+/// Range of a quantity that has the values a, b at the ends of `time` and changes no faster than
+/// `speed` between them. Where it does so all the way, that is [a, b].
+Range between(double a, double b, double speed, double time, double limit) noexcept {
+  const double middle = 0.5 * (a + b);
+  const double reach = 0.5 * std::max(speed * time, std::abs(b - a)) + kRounding * limit;
+  return {std::max(middle - reach, -limit), std::min(middle + reach, limit)};
+}
+
+double magnitude(const Range& range) noexcept { return std::max(-range.low, range.high); }
+
+/// Bounds |P^(k)| for k = 0 … 5 of the quintic with coefficients c within `radius` of `centre`: the
+/// Taylor series there ends, so its terms' magnitudes are all there is.
+std::array<double, 6> derivative_bounds(const std::array<double, 6>& c, double centre,
+                                        double radius) noexcept {
+  std::array<double, 6> bounds = c;
+  for (std::size_t k = 0; k < 5; ++k) {  // Horner's rule, again and again: P^(k)/k! at the centre
+    for (std::size_t i = 5; i-- > k;) bounds[i] += centre * bounds[i + 1];
+  }
+  for (double& term : bounds) term = std::abs(term);
+  for (std::size_t k = 0; k < 5; ++k) {  // the same by the radius, with magnitudes
+    for (std::size_t i = 5; i-- > k;) bounds[i] += radius * bounds[i + 1];
+  }
+  constexpr std::array<double, 6> kFactorial = {1, 1, 2, 6, 24, 120};
+  for (std::size_t k = 0; k < 6; ++k) bounds[k] *= kFactorial[k];
+  return bounds;
+}
+
+/// Where u lies, and bounds on its derivatives by τ, within a stretch of a piece.
+struct TimingBounds {
+  double centre = 0.0, radius = 0.0;
+  std::array<double, 5> u{};  ///< [k]: |d^k u/dτ^k|, k >= 1
+};
+
+TimingBounds timing_bounds(const TrajectoryPiece& piece, double from, double to) noexcept {
+  const double per_second = 1.0 / piece.duration;
+  const double x = 0.5 * (from + to) * per_second;
+  const double radius = 0.5 * (to - from) * per_second;
+  const auto& c = piece.timing;
+  TimingBounds bounds;
+  const std::array<double, 6> by_x = derivative_bounds(c, x, radius);
+  bounds.centre = c[0] + x * (c[1] + x * (c[2] + x * (c[3] + x * (c[4] + x * c[5]))));
+  bounds.radius = radius * by_x[1];
+  double scale = 1.0;
+  for (std::size_t k = 1; k < 5; ++k) bounds.u[k] = by_x[k] * (scale *= per_second);
+  return bounds;
+}
+
+/// Bounds |d⁴q/dτ⁴| of joint i (Faà di Bruno, fourth order).
+double snap_bound(const TrajectoryPiece& piece, const TimingBounds& timing,
+                  std::size_t i) noexcept {
+  std::array<double, 6> c;
+  for (std::size_t k = 0; k < 6; ++k) c[k] = piece.path[k][i];
+  const std::array<double, 6> p = derivative_bounds(c, timing.centre, timing.radius);
+  const auto& u = timing.u;
+  return p[4] * u[1] * u[1] * u[1] * u[1] + 6.0 * p[3] * u[1] * u[1] * u[2] +
+         p[2] * (3.0 * u[2] * u[2] + 4.0 * u[1] * u[3]) + p[1] * u[4];
 }
 
 }  // namespace
@@ -37,13 +84,24 @@ Lookahead::Lookahead(const JointLimits& limits, double cell)
 void Lookahead::begin(const Trajectory& trajectory) noexcept VIAPOINT_NONBLOCKING {
   trajectory_ = &trajectory;
   piece_ = 0;
+  begun_ = false;
   first_ = 0;
   end_ = 0;
 }
 
-void Lookahead::advance(double tau, int cells) noexcept VIAPOINT_NONBLOCKING {
+int Lookahead::advance(double tau, int cells, int pieces) noexcept VIAPOINT_NONBLOCKING {
   first_ = std::max(first_, static_cast<std::int64_t>(std::floor(tau / width_)));
-  for (int i = 0; i < cells && end_ < first_ + kCells; ++i) compute_next_cell();
+  if (end_ < first_) {  // the motion has overtaken its future: give up what lies between
+    end_ = first_;
+    begun_ = false;
+    piece_ = trajectory_->piece_at(static_cast<double>(end_) * width_);
+  }
+  int left = pieces;
+  for (int i = 0; i < cells && end_ < first_ + kCells; ++i) {
+    if (!begun_) begin_cell();
+    if (!end_cell(left)) break;
+  }
+  return pieces - left;
 }
 
 bool Lookahead::ranges(double from, double to,
@@ -63,37 +121,52 @@ bool Lookahead::ranges(double from, double to,
   return true;
 }
 
-void Lookahead::compute_next_cell() noexcept VIAPOINT_NONBLOCKING {
-  const double from = static_cast<double>(end_) * width_;
-  const double to = static_cast<double>(end_ + 1) * width_;
+void Lookahead::begin_cell() noexcept VIAPOINT_NONBLOCKING {
   DerivativeRanges& cell = cells_[static_cast<std::size_t>(end_ % kCells)];
   for (std::size_t i = 0; i < static_cast<std::size_t>(joints_); ++i) {
     cell.first[i] = cell.second[i] = cell.third[i] = kNothing;
   }
-  const auto& pieces = trajectory_->pieces();
-  for (; piece_ < pieces.size(); ++piece_) {
+  begun_ = true;
+}
+
+bool Lookahead::end_cell(int& pieces) noexcept VIAPOINT_NONBLOCKING {
+  const double from = static_cast<double>(end_) * width_;
+  const double to = static_cast<double>(end_ + 1) * width_;
+  DerivativeRanges& cell = cells_[static_cast<std::size_t>(end_ % kCells)];
+  const auto& all = trajectory_->pieces();
+  for (; piece_ < all.size(); ++piece_) {
+    if (pieces == 0) return false;
+    --pieces;
     const double start = trajectory_->start_of(piece_);
-    const TrajectoryPiece& piece = pieces[piece_];
+    const TrajectoryPiece& piece = all[piece_];
     add_piece(piece, std::clamp(from - start, 0.0, piece.duration),
               std::clamp(to - start, 0.0, piece.duration), cell);
     if (start + piece.duration > to) break;
   }
-  if (piece_ == pieces.size()) add_rest(cell);
+  if (piece_ == all.size()) add_rest(cell);
+  begun_ = false;
   ++end_;
+  return true;
 }
 
 void Lookahead::add_piece(const TrajectoryPiece& piece, double from, double to,
                           DerivativeRanges& cell) const noexcept VIAPOINT_NONBLOCKING {
-  const JointState start = piece.at(from);
-  const JointState middle = piece.at(0.5 * (from + to));
-  const JointState end = piece.at(to);
+  const double half = 0.5 * (to - from);
+  const std::array<JointState, 3> state = {piece.at(from), piece.at(from + half), piece.at(to)};
+  const TimingBounds timing = timing_bounds(piece, from, to);
   for (int j = 0; j < joints_; ++j) {
     const auto i = static_cast<std::size_t>(j);
-    include(cell.first[i], bound(start.qd[j], middle.qd[j], end.qd[j], limits_.velocity[j], 0.0));
-    include(cell.second[i],
-            bound(start.qdd[j], middle.qdd[j], end.qdd[j], limits_.acceleration[j], 0.0));
-    include(cell.third[i],
-            bound(start.qddd[j], middle.qddd[j], end.qddd[j], limits_.jerk[j], kLimitMargin));
+    const double snap = snap_bound(piece, timing, i);
+    for (std::size_t s = 0; s < 2; ++s) {
+      const JointState &a = state[s], &b = state[s + 1];
+      const Range third = between(a.qddd[j], b.qddd[j], snap, half, limits_.jerk[j]);
+      const Range second =
+          between(a.qdd[j], b.qdd[j], magnitude(third), half, limits_.acceleration[j]);
+      const Range first = between(a.qd[j], b.qd[j], magnitude(second), half, limits_.velocity[j]);
+      include(cell.first[i], first);
+      include(cell.second[i], second);
+      include(cell.third[i], third);
+    }
   }
 }
 

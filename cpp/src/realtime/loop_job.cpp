@@ -10,30 +10,13 @@
 namespace viapoint {
 namespace {
 
-constexpr double kNanosecond = 1e-9;
 /// Waits longer than this are waits without end [s].
 constexpr double kForever = 1e8;
 
-/// p50, p99 and the largest of a figure of the log [s].
-struct Spread {
-  double p50 = 0.0, p99 = 0.0, max = 0.0;
-};
-
-Spread spread(const std::vector<LogRecord>& log, std::int64_t LogRecord::* figure) {
-  if (log.empty()) return {};
-  std::vector<std::int64_t> values;
-  values.reserve(log.size());
-  for (const LogRecord& record : log) values.push_back(record.*figure);
-  std::ranges::sort(values);
-  const auto at = [&](std::size_t percent) {
-    return kNanosecond * static_cast<double>(values[(values.size() - 1) * percent / 100]);
-  };
-  return {at(50), at(99), at(100)};
-}
-
 }  // namespace
 
-LoopJob::LoopJob(std::shared_ptr<const Trajectory> trajectory) {
+LoopJob::LoopJob(std::shared_ptr<const Trajectory> trajectory, std::size_t log_records)
+    : log_(log_records) {
   motion_.trajectory = std::move(trajectory);
 }
 
@@ -69,28 +52,17 @@ void LoopJob::wish(Wish wish) {
 
 std::vector<LogRecord> LoopJob::log() const {
   const std::lock_guard lock(mutex_);
-  return log_;
+  return log_.records();
 }
 
 RunReport LoopJob::report() const {
-  const std::vector<LogRecord> records = log();
-  RunReport report;
-  report.cycles = records.size() + motion_.lost_records;
+  const std::lock_guard lock(mutex_);
+  RunReport report = log_.report();
+  const std::uint64_t lost = motion_.lost_records;
+  report.cycles += lost;
+  report.lost_records += lost;
   report.overruns = motion_.overruns;
   report.missed_cycles = motion_.missed_cycles;
-  report.lost_records = motion_.lost_records;
-  const Spread latency = spread(records, &LogRecord::latency);
-  report.latency_p50 = latency.p50;
-  report.latency_p99 = latency.p99;
-  report.latency_max = latency.max;
-  const Spread compute = spread(records, &LogRecord::compute);
-  report.compute_p50 = compute.p50;
-  report.compute_p99 = compute.p99;
-  report.compute_max = compute.max;
-  if (!records.empty()) {
-    report.wall_time =
-        kNanosecond * static_cast<double>(records.back().stamp - records.front().stamp);
-  }
   return report;
 }
 
@@ -101,7 +73,7 @@ bool LoopJob::ended() const {
 
 void LoopJob::append(std::span<const LogRecord> records) {
   const std::lock_guard lock(mutex_);
-  log_.insert(log_.end(), records.begin(), records.end());
+  for (const LogRecord& record : records) log_.append(record);
 }
 
 void LoopJob::end(std::string fault) {

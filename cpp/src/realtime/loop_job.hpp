@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "realtime/run_log.hpp"
 #include "viapoint/realtime/controller_loop.hpp"
 #include "viapoint/realtime/motion_queue.hpp"
 
@@ -17,7 +18,8 @@ namespace viapoint {
 /// Outlives the loop it ran in. Threads: any.
 class LoopJob final : public Job {
  public:
-  explicit LoopJob(std::shared_ptr<const Trajectory> trajectory);
+  /// @param log_records records to keep, > 0
+  LoopJob(std::shared_ptr<const Trajectory> trajectory, std::size_t log_records);
 
   bool wait(double timeout) override;
   void pause() override { wish(Wish::kPause); }
@@ -48,7 +50,7 @@ class LoopJob final : public Job {
   std::condition_variable changed_;
   bool ended_ = false;
   std::string fault_;
-  std::vector<LogRecord> log_;
+  RunLog log_;
 };
 
 }  // namespace viapoint

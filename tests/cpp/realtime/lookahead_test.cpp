@@ -23,7 +23,7 @@ TEST(Lookahead, RangesHoldTheDerivativesBetweenTheSamplesToo) {
     Lookahead lookahead(motion.limits, kCell);
     lookahead.begin(motion.trajectory);
     for (double tau = 0.0; tau < motion.trajectory.duration() - 0.01; tau += 5e-3) {
-      lookahead.advance(tau, Lookahead::kCells);
+      lookahead.advance(tau, Lookahead::kCells, 1 << 20);
       DerivativeRanges ranges;
       ASSERT_TRUE(lookahead.ranges(tau, tau + 2e-3, ranges));
       for (int s = 0; s < 50; ++s, ++checked) {
@@ -47,13 +47,13 @@ TEST(Lookahead, RestsAfterTheEndAndKnowsOnlyItsWindow) {
   lookahead.begin(motion.trajectory);
   DerivativeRanges ranges;
   EXPECT_FALSE(lookahead.ranges(0.0, 1e-3, ranges));
-  lookahead.advance(0.0, 10);
+  lookahead.advance(0.0, 10, 1 << 20);
   EXPECT_TRUE(lookahead.ranges(0.0, 9.5e-3, ranges));
   EXPECT_FALSE(lookahead.ranges(0.0, 10.5e-3, ranges));
 
   const double duration = motion.trajectory.duration();
   for (double tau = 0.0; tau < duration + 0.1; tau += 0.1) {
-    lookahead.advance(tau, Lookahead::kCells);
+    lookahead.advance(tau, Lookahead::kCells, 1 << 20);
   }
   EXPECT_FALSE(lookahead.ranges(0.0, 1e-3, ranges));
   ASSERT_TRUE(lookahead.ranges(duration + 0.11, duration + 0.15, ranges));

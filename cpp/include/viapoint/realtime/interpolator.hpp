@@ -27,8 +27,9 @@ enum class Wish : std::uint8_t { kRun, kPause, kStop };
 /// through each change. A wait is a piece of constant position and runs at the rate like the rest;
 /// outputs change with the first setpoint of the piece that carries them.
 ///
-/// Real-time: all but the constructor is safe; a cycle costs O(joints) whatever the motion's
-/// length. Threads: one.
+/// Real-time: all but the constructor is safe; a cycle costs O(joints) whatever the motion's length
+/// and however many pieces it passes over (but for the binary search for the piece under way).
+/// Threads: one.
 class Interpolator {
  public:
   /// Holds `position` until the first begin(). Allocates.
@@ -65,8 +66,7 @@ class Interpolator {
  private:
   [[nodiscard]] double target() const noexcept;
   [[nodiscard]] RunState classify() const noexcept;
-  void enter_pieces() noexcept VIAPOINT_NONBLOCKING;
-  void apply_outputs(const TrajectoryPiece& piece) noexcept VIAPOINT_NONBLOCKING;
+  void enter_piece(std::size_t piece) noexcept VIAPOINT_NONBLOCKING;
   void evaluate(double curvature, Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKING;
   void move_on() noexcept VIAPOINT_NONBLOCKING;
 
@@ -87,6 +87,7 @@ class Interpolator {
   int move_ = -1;
   std::uint64_t cycles_ = 0;
   std::uint64_t outputs_ = 0;
+  std::uint64_t outputs_before_ = 0;  ///< when the motion began
   JointVector position_;
 };
 

@@ -29,10 +29,11 @@ struct DerivativeRanges {
 /// the ranges of the derivatives in it; every cell is computed once, a few a cycle, so that a
 /// question about the future costs no polynomial at all.
 ///
-/// A cell's range is the hull of three samples of each piece in it, widened by what a parabola
-/// through them may exceed it, twice over, and clipped to the joint's limits: those bound the
-/// nominal motion everywhere (its certificate proves it), so that the widening never takes away
-/// room at a limit that is reached.
+/// A cell's ranges are bounds, not samples: in each piece d⁴q/dτ⁴ is bounded term by term from its
+/// Taylor expansion about the middle, and from the values at the ends of each half that bounds
+/// d³q/dτ³, which bounds d²q/dτ², which bounds dq/dτ (Lipschitz). All are clipped to the joint's
+/// limits, which the motion's certificate proves up to its slack, so that no bound takes away room
+/// at a limit that is reached.
 class Lookahead {
  public:
   /// @param cell width of a cell [s of nominal time]. Allocates. @pre limits valid, cell > 0
@@ -41,8 +42,10 @@ class Lookahead {
   /// Starts anew at the beginning of `trajectory`, which must outlive its use here.
   /// Real-time: safe.
   void begin(const Trajectory& trajectory) noexcept VIAPOINT_NONBLOCKING;
-  /// Forgets what lies before τ [s] and computes at most `cells` new cells. Real-time: safe.
-  void advance(double tau, int cells) noexcept VIAPOINT_NONBLOCKING;
+  /// Forgets what lies before τ [s] and computes at most `cells` new cells, looking at no more than
+  /// `pieces` pieces: a cell that has more is gone on with by the next call, and unknown until
+  /// then. Returns the number of pieces looked at. Real-time: safe.
+  int advance(double tau, int cells, int pieces) noexcept VIAPOINT_NONBLOCKING;
   /// Ranges over [from, to] [s]; false where that is not known yet. After the end of the
   /// trajectory the arm rests. Real-time: safe.
   [[nodiscard]] bool ranges(double from, double to,
@@ -53,7 +56,8 @@ class Lookahead {
   static constexpr int kCells = 256;
 
  private:
-  void compute_next_cell() noexcept VIAPOINT_NONBLOCKING;
+  void begin_cell() noexcept VIAPOINT_NONBLOCKING;
+  [[nodiscard]] bool end_cell(int& pieces) noexcept VIAPOINT_NONBLOCKING;
   void add_piece(const TrajectoryPiece& piece, double from, double to,
                  DerivativeRanges& cell) const noexcept VIAPOINT_NONBLOCKING;
   void add_rest(DerivativeRanges& cell) const noexcept VIAPOINT_NONBLOCKING;
@@ -62,7 +66,8 @@ class Lookahead {
   JointLimits limits_;
   double width_;
   const Trajectory* trajectory_ = nullptr;
-  std::size_t piece_ = 0;                ///< where the next cell begins
+  std::size_t piece_ = 0;                ///< next to look at
+  bool begun_ = false;                   ///< cell `end_` holds some of its pieces
   std::int64_t first_ = 0;               ///< first cell still held
   std::int64_t end_ = 0;                 ///< first cell not computed yet
   std::vector<DerivativeRanges> cells_;  ///< ring, kCells long

@@ -1,0 +1,51 @@
+#include "realtime/run_log.hpp"
+
+namespace viapoint {
+namespace {
+
+constexpr double kNanosecond = 1e-9;
+
+}  // namespace
+
+void RunLog::append(const LogRecord& record) {
+  if (cycles_++ == 0) first_stamp_ = record.stamp;
+  last_stamp_ = record.stamp;
+  latency_.add(record.latency);
+  compute_.add(record.compute);
+  const bool rests = rests_on(record);
+  if (rests && resting_) {
+    ++rested_;
+    return;
+  }
+  resting_ = rests;
+  if (records_.size() == capacity_) {
+    records_.pop_front();
+    ++dropped_;
+  }
+  records_.push_back(record);
+}
+
+bool RunLog::rests_on(const LogRecord& record) const {
+  if (records_.empty() || record.state != RunState::kPaused) return false;
+  const LogRecord& last = records_.back();
+  return last.state == RunState::kPaused && last.outputs == record.outputs && last.q == record.q;
+}
+
+std::vector<LogRecord> RunLog::records() const { return {records_.begin(), records_.end()}; }
+
+RunReport RunLog::report() const {
+  RunReport report;
+  report.cycles = cycles_;
+  report.rested_cycles = rested_;
+  report.lost_records = dropped_;
+  report.wall_time = kNanosecond * static_cast<double>(last_stamp_ - first_stamp_);
+  report.latency_p50 = latency_.quantile(50);
+  report.latency_p99 = latency_.quantile(99);
+  report.latency_max = latency_.quantile(100);
+  report.compute_p50 = compute_.quantile(50);
+  report.compute_p99 = compute_.quantile(99);
+  report.compute_max = compute_.quantile(100);
+  return report;
+}
+
+}  // namespace viapoint
