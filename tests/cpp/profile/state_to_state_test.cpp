@@ -255,16 +255,14 @@ TEST(StateToState, NamesTheAxisThatRefuses) {
 /// Plans anew in every cycle from where the last plan is by then.
 TEST(StateToState, FollowsATargetThatChangesInEveryCycle) {
   constexpr double kCycle = 0.002;
-  int arrived = 0;
-  for (int seed = 0; seed < 20; ++seed) {
+  for (int seed = 0; seed < 10; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
     Requests all;
     for (int i = 0; i < 3; ++i) all.add({{}, {}, testing::random_request(random, 0.5).limits});
     StateToState motion;
-    for (int cycle = 0; cycle < 2000; ++cycle) {
+    for (int cycle = 0; cycle < 6000; ++cycle) {
       for (size_t i = 0; i < 3; ++i) {
-        if (cycle == 1000) all.end[i].q = uniform(random, -1.0, 1.0);
         if (cycle < 1000) all.end[i].q = uniform(random, -1.0, 1.0);
       }
       ASSERT_EQ(motion.plan(all.start, all.end, all.limits), MoveStatus::kSolved);
@@ -274,16 +272,14 @@ TEST(StateToState, FollowsATargetThatChangesInEveryCycle) {
       }
       if (HasFailure()) return;
     }
-    // 2 s after the last change some have arrived, and where they have, they rest.
-    if (motion.duration() > kCycle) continue;
-    ++arrived;
+    // 10 s after the last change all have arrived, and rest.
+    EXPECT_EQ(motion.duration(), 0.0);
     for (size_t i = 0; i < 3; ++i) {
       EXPECT_EQ(all.start[i].q, all.end[i].q);
       EXPECT_EQ(all.start[i].qd, 0.0);
       EXPECT_EQ(all.start[i].qdd, 0.0);
     }
   }
-  EXPECT_GT(arrived, 0);
 }
 
 TEST(StateToState, DoesNotSwingAroundATargetThatIsNoisy) {
