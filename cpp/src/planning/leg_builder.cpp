@@ -208,7 +208,7 @@ Leg LegBuilder::lin_by_wrist(const Target& target, const JointVector& start) con
     ends = {joints->q};
   } else if (const auto* pose = std::get_if<PoseTarget>(&target)) {
     ends = robot_.inverse().solve_all(pose->pose_base_tool);
-    std::stable_sort(ends.begin(), ends.end(), [&](const JointVector& a, const JointVector& b) {
+    std::sort(ends.begin(), ends.end(), [&](const JointVector& a, const JointVector& b) {
       const Eigen::Index wrist = robot_.joints() - 3;
       return (a - start).tail(wrist).cwiseAbs().maxCoeff() <
              (b - start).tail(wrist).cwiseAbs().maxCoeff();
