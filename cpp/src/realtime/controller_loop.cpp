@@ -3,6 +3,8 @@
 #include <array>
 #include <cmath>
 #include <mutex>
+#include <string>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -73,11 +75,7 @@ struct ControllerLoop::Impl {
     }
     channels.snapshot.write(powered.start().q, powered.start());
     if (options.lock_memory && !clock->is_virtual()) memory = lock_memory(shortcomings);
-    companion = std::thread([this] { accompany(); });
-    loop = std::thread([this] {
-      prepare_loop_thread();
-      runner.run();
-    });
+    start_threads();
     if (!clock->is_virtual()) raise_priority(loop, options.priority, shortcomings);
   }
 
@@ -89,6 +87,22 @@ struct ControllerLoop::Impl {
   }
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
+
+  /// Both or none. @throws MotionError(kDriveFault)
+  void start_threads() try {
+    companion = std::thread([this] { accompany(); });
+    loop = std::thread([this] {
+      prepare_loop_thread();
+      runner.run();
+    });
+  } catch (const std::system_error& error) {
+    channels.quit.store(true, std::memory_order_release);
+    if (companion.joinable()) companion.join();
+    throw MotionError(ErrorCode::kDriveFault,
+                      std::string("a thread of the loop cannot be created: ") + error.what(),
+                      {"end other programs, or allow more threads (\"ulimit -u\", or the "
+                       "container's limit of processes) or more memory"});
+  }
 
   void bring_to_rest() {
     const std::lock_guard lock(admission);

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "realtime/random_motion.hpp"
+#include "realtime/thread_shortage.hpp"
 #include "viapoint/core/error.hpp"
 #include "viapoint/drives/simulated_drive.hpp"
 
@@ -277,6 +278,28 @@ TEST(ControllerLoop, ADriveOfOtherJointsIsRefused) {
   EXPECT_EQ(code_of([] { virtual_loop(std::make_unique<SimulatedDrive>(JointVector::Zero(3))); }),
             ErrorCode::kBadArgument);
   EXPECT_EQ(code_of([] { virtual_loop(nullptr); }), ErrorCode::kBadArgument);
+}
+
+TEST(ControllerLoop, WithoutItsThreadsItRefusesAndReleasesTheDrive) {
+  for (const int allowed : {0, 1}) {
+    SCOPED_TRACE(allowed);
+    const auto history = std::make_shared<DriveHistory>();
+    const ThreadShortage shortage(allowed);
+    try {
+      virtual_loop(std::make_unique<WatchedDrive>(history));
+      FAIL() << "there is a loop without its thread";
+    } catch (const MotionError& error) {
+      EXPECT_EQ(error.code(), ErrorCode::kDriveFault);
+      EXPECT_NE(error.problem().message.find("temporarily unavailable"), std::string::npos)
+          << error.problem().message;
+      EXPECT_FALSE(error.problem().ways_out.empty());
+    }
+    EXPECT_EQ(history->enabled, 1);
+    EXPECT_EQ(history->released, 1);
+    EXPECT_EQ(history->exchanges, 0U);
+  }
+  const ThreadShortage enough(2);
+  EXPECT_TRUE(virtual_loop()->run(move_by(1.0, kLimits))->wait(20.0));
 }
 
 /// Wakes three and a half cycles late, once.

@@ -69,7 +69,8 @@ class Job {
 class ControllerLoop {
  public:
   /// Enables the drive and starts the loop thread.
-  /// @throws MotionError(kDriveFault)
+  /// @throws MotionError(kDriveFault) when the drive cannot be enabled, or a thread not be created;
+  ///   kBadArgument for options and for joints that do not fit the drive
   ControllerLoop(std::unique_ptr<Drive> drive, const JointLimits& limits, LoopOptions options = {},
                  std::unique_ptr<Clock> clock = std::make_unique<MonotonicClock>());
   ~ControllerLoop();
