@@ -25,6 +25,12 @@ std::string result_table(const Trajectory& trajectory, const Job& job) {
   table += fmt::format("{:<22} {:.6f} s\n", "wall time", report.wall_time);
   table += fmt::format("{:<22} {} ({} overruns, {} missed)\n", "cycles", report.cycles,
                        report.overruns, report.missed_cycles);
+  if (report.rested_cycles > 0) {
+    table += fmt::format("{:<22} {} at rest, not in the log\n", "", report.rested_cycles);
+  }
+  if (report.lost_records > 0) {
+    table += fmt::format("{:<22} {} missing in the log\n", "lost records", report.lost_records);
+  }
   table += fmt::format("{:<22} p50 {:.1f}  p99 {:.1f}  max {:.1f} us\n", "wake-up latency",
                        report.latency_p50 / kMicrosecond, report.latency_p99 / kMicrosecond,
                        report.latency_max / kMicrosecond);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "controller/exit_code.hpp"
+#include "controller/log_file.hpp"
 #include "controller/result_table.hpp"
 #include "controller/stop_signals.hpp"
 #include "viapoint/drives/simulated_drive.hpp"
@@ -76,6 +77,7 @@ int exit_code_of(const MotionError& error) {
 }
 
 int run_program(const Options& options, std::ostream& out) {
+  check_log_can_be_written(options.log);
   const RobotPtr robot = RobotModel::make(load_description(options.robot));
   const MotionProgram program = load_program(options.program);
   check_fingerprint(program, *robot, options.program);

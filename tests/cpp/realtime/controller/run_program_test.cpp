@@ -129,6 +129,31 @@ TEST_F(RunProgram, TellsAFileThatIsNotThere) {
   }
 }
 
+TEST_F(RunProgram, ALogThatCannotBeWrittenIsFoundBeforeAnythingElse) {
+  MotionProgram far = program();
+  std::get<PtpMove>(far.steps[0].what).target = JointTarget{JointVector::Constant(2, 100.0)};
+  std::ofstream(folder_ / "file") << "in the way";
+  for (const fs::path& log : {folder_ / "missing" / "log.csv", folder_ / "file" / "log.csv",
+                              folder_, folder_ / "", fs::path()}) {
+    SCOPED_TRACE(log);
+    options_.log = log.string();
+    // Were it found later, the program would be refused first.
+    EXPECT_EQ(run(far), kUnreadable);
+    EXPECT_NE(message_.find("log cannot be written"), std::string::npos) << message_;
+    EXPECT_NE(message_.find(options_.log), std::string::npos) << message_;
+  }
+}
+
+TEST_F(RunProgram, ARefusedProgramLeavesTheLogOfTheRunBefore) {
+  std::ofstream(options_.log) << "of the run before";
+  MotionProgram far = program();
+  std::get<PtpMove>(far.steps[0].what).target = JointTarget{JointVector::Constant(2, 100.0)};
+  EXPECT_EQ(run(far), kRefused);
+  EXPECT_EQ(written_log(), "of the run before");
+  const auto files = std::distance(fs::directory_iterator(folder_), fs::directory_iterator());
+  EXPECT_EQ(files, 2) << "something beside the program and the log was left";
+}
+
 TEST_F(RunProgram, ASignalBringsTheArmToRestAndTheLogIsWritten) {
   options_.virtual_time = false;
   sigset_t terminate, before;
