@@ -70,8 +70,8 @@ struct AxisMove {
 /// outside the limits first comes back in: the acceleration at full jerk, then the velocity by the
 /// quickest motion whose acceleration vanishes on the limit.
 /// Exact but for rounding: states meet within 1e-9 of the size of the move, also where limits lie
-/// decades apart. Digits are lost where the two jerk limits differ by a factor of more than 1e4, and
-/// where the velocity has to change by less than its own rounding.
+/// decades apart. Digits are lost where the two jerk limits differ by a factor of more than 1e4,
+/// and where the velocity has to change by less than its own rounding.
 /// @return kSolved, or why there is no such motion; `move` is then left alone
 /// Real-time: safe. Threads: none shared.
 [[nodiscard]] MoveStatus quickest_move(const AxisState& start, const AxisState& end,
