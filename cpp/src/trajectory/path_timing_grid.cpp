@@ -121,6 +121,11 @@ void cut(const std::vector<Sample>& samples, size_t piece, double from, double t
     sum[k] = sum[k - 1] + (s[k] - s[k - 1]) * inverse;
   }
   const double total = sum[count - 1];
+  // Speeds that leave the range of doubles leave no widths to cut by.
+  if (!std::isfinite(total)) {
+    cells.push_back({piece, from, to});
+    return;
+  }
   const int n =
       static_cast<int>(std::clamp(std::ceil(total / kCellShare), double(least), double(most)));
   double start = from;
@@ -138,12 +143,15 @@ void cut(const std::vector<Sample>& samples, size_t piece, double from, double t
   }
 }
 
+bool is_positive(double x) { return std::isfinite(x) && x > 0.0; }
+
 }  // namespace
 
 Grid make_grid(const JointPath& path, const JointLimits& limits) {
   const std::vector<Sample> samples = sweep(path, limits);
   const double start = ramp_length(samples, false);
   const double end = ramp_length(samples, true);
+  if (!is_positive(start) || !is_positive(end)) return {};
   const double floor = 0.5 * std::min(start, end);
   Grid grid;
   const size_t pieces = path.pieces().size();
@@ -159,6 +167,10 @@ Grid make_grid(const JointPath& path, const JointLimits& limits) {
     cut(samples, k, from, to, floor, curved ? 4 : 2, curved ? 16 : 64, grid.cells);
     if (k + 1 == pieces) grid.cells.push_back({k, to, piece.length});
   }
+  constexpr size_t kFewestCells = 3;  // two nodes between them
+  const bool cut_well = std::all_of(grid.cells.begin(), grid.cells.end(),
+                                    [](const Cell& cell) { return is_positive(cell.length()); });
+  if (!cut_well || grid.cells.size() < kFewestCells) return {};
   // The guess: the swept speed, its valleys and peaks smoothed over neighbours.
   const size_t nodes = grid.cells.size() - 1;
   std::vector<double> z(nodes);
@@ -180,6 +192,7 @@ Grid make_grid(const JointPath& path, const JointLimits& limits) {
   }
   grid.square_rate.resize(nodes);
   for (size_t k = 0; k < nodes; ++k) grid.square_rate[k] = std::pow(z[k], 4.0 / 3.0);
+  if (!std::all_of(grid.square_rate.begin(), grid.square_rate.end(), is_positive)) return {};
   return grid;
 }
 

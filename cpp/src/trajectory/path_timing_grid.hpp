@@ -28,6 +28,8 @@ struct Grid {
 
 /// Cells of about equal change: near rest and near slow places the speed along a motion of constant
 /// jerk scales with a length w = ṡ^{3/2} / √(9/2 s⃛), and cells are a share of that.
+/// @returns two nodes at least, every cell and every guess positive and finite; an empty grid where
+///          the numbers leave the range of doubles
 [[nodiscard]] Grid make_grid(const JointPath& path, const JointLimits& limits);
 
 }  // namespace viapoint::path_timing

@@ -106,6 +106,7 @@ struct NewtonSystem {
   }
 
   /// b' = tie · b at both ends: the slope there is no unknown of its own.
+  /// @pre at least two nodes
   void tie_ends(double start, double end) {
     const auto tie = [this](size_t k, double t) {
       Block& d = diagonal[k];

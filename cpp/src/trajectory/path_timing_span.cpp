@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "viapoint/core/bernstein_bounds.hpp"
 
@@ -170,9 +171,13 @@ TimedSpan TimedSpan::constant_jerk(size_t piece, double length, const RateState&
 }
 
 void Shares::include(const Shares& other) {
-  velocity = std::max(velocity, other.velocity);
-  acceleration = std::max(acceleration, other.acceleration);
-  jerk = std::max(jerk, other.jerk);
+  // What is no number is no bound: infinity, which no maximum loses again.
+  const auto raise = [](double& mine, double theirs) {
+    mine = std::isnan(theirs) ? std::numeric_limits<double>::infinity() : std::max(mine, theirs);
+  };
+  raise(velocity, other.velocity);
+  raise(acceleration, other.acceleration);
+  raise(jerk, other.jerk);
 }
 
 double Shares::stretch() const {

@@ -120,8 +120,9 @@ std::optional<UniformCeilings> straight_ceilings(const JointPath& path, const Jo
 std::vector<TimedSpan> seven_phases(const JointPath& path, const UniformCeilings& ceilings) {
   const JerkProfile profile =
       rest_to_rest(path.length(), ceilings.rate, ceilings.change, ceilings.jerk);
-  // Shorter than this share of the whole, a cut is rounding and not a span of its own.
-  const double sliver = 1e-14 * profile.total();
+  // Shorter than this share of its phase, a cut is rounding and not a span of its own. A whole
+  // phase always is one, however short: speed or acceleration may change from nothing to all in it.
+  constexpr double kSliver = 1e-14;
   std::vector<TimedSpan> spans;
   RateState state;  // s within the piece
   size_t piece = 0;
@@ -129,6 +130,7 @@ std::vector<TimedSpan> seven_phases(const JointPath& path, const UniformCeilings
   for (int k = 0; k < profile.phases; ++k) {
     const double jerk = profile.jerk[static_cast<size_t>(k)];
     double left = profile.duration[static_cast<size_t>(k)];
+    const double sliver = kSliver * left;
     while (left > sliver) {
       const double length = path.pieces()[piece].length;
       const bool crosses = piece < last && advanced(state, jerk, left).s >= length;

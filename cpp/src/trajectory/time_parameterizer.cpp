@@ -5,6 +5,7 @@
 
 #include "trajectory/path_timing_barrier.hpp"
 #include "trajectory/path_timing_grid.hpp"
+#include "trajectory/path_timing_range.hpp"
 #include "trajectory/path_timing_span.hpp"
 #include "trajectory/path_timing_uniform.hpp"
 #include "viapoint/core/error.hpp"
@@ -70,7 +71,9 @@ std::vector<TimedSpan> quickest(const JointPath& path, const JointLimits& limits
   constexpr int kPasses = 2, kMostPasses = 5;
   constexpr double kGoodEnough = 1.02;
   constexpr double kFirstWeight = 0.1, kRoughWeight = 0.01, kLastWeight = 1e-3;
-  BarrierProblem problem(path, limits, path_timing::make_grid(path, limits));
+  const path_timing::Grid grid = path_timing::make_grid(path, limits);
+  if (grid.cells.empty()) return {};
+  BarrierProblem problem(path, limits, grid);
   SquareRate rate = problem.start();
   if (!problem.solve(rate, kFirstWeight, kRoughWeight)) return {};
   // The optimiser sees limits at a few places of a cell and b as a cubic in s; the motion is a
@@ -100,12 +103,12 @@ std::vector<TrajectoryPiece> parameterize(const JointPath& path, const JointLimi
   using namespace path_timing;
   require_valid(path, limits);
   if (const auto ceilings = path_timing::straight_ceilings(path, limits)) {
-    auto spans = seven_phases(path, *ceilings);
+    auto spans = seven_phases(path, within_range(*ceilings, path, limits));
     stretch_time(spans, prove(path, limits, spans, kProofSlack).stretch() * kMargin);
     return to_pieces(path, spans);
   }
   // The ceilings are bounds already, so proof can only shorten what they give.
-  auto spans = seven_phases(path, uniform_ceilings(path, limits));
+  auto spans = seven_phases(path, within_range(uniform_ceilings(path, limits), path, limits));
   stretch_time(spans, std::min(1.0, kMargin * prove(path, limits, spans, kProofSlack).stretch()));
   auto quick = quickest(path, limits);
   if (!quick.empty() && total_duration(quick) < total_duration(spans)) spans = std::move(quick);

@@ -8,6 +8,20 @@
 #include "trajectory/trajectory_piece_check.hpp"
 
 namespace viapoint {
+namespace {
+
+void add(const TrajectoryPiece& piece, OutputEffect& effect) {
+  for (int i = 0; i < piece.outputs; ++i) {
+    const OutputChange& change = piece.output[static_cast<size_t>(i)];
+    if (change.index < 0 || change.index >= 64) continue;
+    const std::uint64_t bit = std::uint64_t{1} << change.index;
+    effect.changed |= bit;
+    effect.on = change.value ? effect.on | bit : effect.on & ~bit;
+  }
+}
+
+}  // namespace
+
 Trajectory::Trajectory(std::vector<TrajectoryPiece> pieces, const JointLimits& limits)
     : pieces_(std::move(pieces)) {
   if (pieces_.empty()) {
@@ -15,6 +29,8 @@ Trajectory::Trajectory(std::vector<TrajectoryPiece> pieces, const JointLimits& l
   }
   const int joints = pieces_.front().joints;
   starts_.reserve(pieces_.size());
+  outputs_.reserve(pieces_.size());
+  OutputEffect outputs;
   for (size_t i = 0; i < pieces_.size(); ++i) {
     if (const auto fault = find_fault(pieces_[i], joints)) {
       throw MotionError(ErrorCode::kBadArgument,
@@ -22,6 +38,8 @@ Trajectory::Trajectory(std::vector<TrajectoryPiece> pieces, const JointLimits& l
     }
     starts_.push_back(duration_);
     duration_ += pieces_[i].duration;
+    add(pieces_[i], outputs);
+    outputs_.push_back(outputs);
   }
   if (limits.joints() != joints) {
     throw MotionError(ErrorCode::kBadArgument, "the trajectory has " + std::to_string(joints) +

@@ -18,7 +18,8 @@ namespace viapoint {
 ///          lies within one path piece. Always succeeds for a valid path: its last resort is a
 ///          uniform stretch of time, which keeps the geometry.
 /// @throws MotionError(kBadArgument) for a path without pieces, of other joints than the limits, or
-///         with numbers that are not finite; (kZeroLength) where no joint moves; (kBadLimits)
+///         with numbers that are not finite, or so extreme that the section would last less than
+///         1e-40 s or more than 1e40 s; (kZeroLength) where no joint moves; (kBadLimits)
 /// A straight section gets the exact seven phases. Any other is optimised over ṡ² along the path
 /// (Verscheure et al. 2009, with jerk by the convex-concave procedure) and ends within about two
 /// per cent of the quickest; where the optimiser does not beat the seven-phase move under bounds

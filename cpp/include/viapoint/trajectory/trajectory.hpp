@@ -3,6 +3,7 @@
 /// real-time code includes.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "viapoint/core/joint_limits.hpp"
@@ -10,6 +11,12 @@
 #include "viapoint/trajectory/trajectory_piece.hpp"
 
 namespace viapoint {
+
+/// What a stretch of motion does to the digital outputs, bit i for output i.
+struct OutputEffect {
+  std::uint64_t changed = 0;  ///< those that it sets or clears
+  std::uint64_t on = 0;       ///< those that are on after it, of the changed ones
+};
 
 /// Immutable once built. Threads: any.
 class Trajectory {
@@ -26,17 +33,22 @@ class Trajectory {
   [[nodiscard]] const std::vector<TrajectoryPiece>& pieces() const { return pieces_; }
   /// Nominal time at which piece i begins [s].
   [[nodiscard]] double start_of(size_t piece) const { return starts_[piece]; }
+  /// What the pieces up to and with piece i do to the outputs, so that a cycle that passes over
+  /// many pieces looks at one. Real-time: safe, O(1).
+  [[nodiscard]] const OutputEffect& outputs_after(size_t piece) const { return outputs_[piece]; }
   [[nodiscard]] const Certificate& certificate() const { return certificate_; }
   /// The planner adds what it alone knows (deviations, manipulability).
   [[nodiscard]] Certificate& certificate() { return certificate_; }
   /// State at t [s], clamped to [0, duration]; at a knot that of the later piece. O(log pieces).
   [[nodiscard]] JointState at(double t) const;
   /// Index of the piece that holds t (the later one at a knot, the last one after the end).
+  /// Real-time: safe, O(log pieces).
   [[nodiscard]] size_t piece_at(double t) const;
 
  private:
   std::vector<TrajectoryPiece> pieces_;
   std::vector<double> starts_;
+  std::vector<OutputEffect> outputs_;
   double duration_ = 0.0;
   Certificate certificate_;
 };
