@@ -1,6 +1,7 @@
 #include "viapoint/path/insertion.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -8,17 +9,30 @@
 #include "path/curve_follower.hpp"
 #include "path/deviation.hpp"
 #include "path/insertion_failure.hpp"
+#include "viapoint/core/units.hpp"
 
 namespace viapoint {
 namespace {
 
 /// Shortest step, as a share of the curve: shorter ones mean that the curve cannot be followed on.
-constexpr double kShortestStep = 1e-7;
+constexpr double kShortestStep = 1e-9;
 /// A knot whose rate misses the curve's by more than this share does not follow it.
 constexpr double kRateResidual = 1e-6;
 /// A quintic Hermite piece with exact ends errs like the sixth power of its length.
 constexpr double kErrorOrder = 6.0;
 constexpr size_t kMostPieces = 200000;
+/// Near a singularity joints whose axes line up may turn against each other without moving the
+/// tool, so the tool alone does not tell that they follow the curve. In one piece a free revolute
+/// joint sweeps this much at most [rad]: too little to come out on another turn or branch.
+constexpr double kMostSweep = 1.0;
+/// And at most its own change between the knots by this factor, and this angle [rad].
+constexpr double kSweepFactor = 1.5;
+constexpr double kSweepFloor = 0.05;
+/// Beyond a limit that is passed the walk goes on for so many pieces, or for so many [rad].
+constexpr size_t kMostPiecesBeyond = 1000;
+constexpr double kFarBeyond = 2.0 * kPi;
+/// A goal this many times as far as the arm reaches is refused without walking there.
+constexpr double kFarGoal = 100.0;
 
 void check_arguments(const ForwardKinematics& arm, const JointLimits& limits,
                      const TaskCurve& curve, const JointVector& start,
@@ -47,6 +61,26 @@ void check_arguments(const ForwardKinematics& arm, const JointLimits& limits,
   }
 }
 
+/// How far the joint comes from its place at the start of the piece, bounded by the control points
+/// of the Bernstein form: b_k = Σ_{j<=k} C(k, j) / C(5, j) c_j.
+double sweep_bound(const JointPiece& piece, int joint) {
+  static constexpr std::array<double, 6> kOfFive = {1.0, 5.0, 10.0, 10.0, 5.0, 1.0};
+  double low = 0.0;
+  double high = 0.0;
+  for (int k = 1; k <= 5; ++k) {
+    double control = 0.0;
+    double of_k = 1.0;  // C(k, j)
+    for (int j = 1; j <= k; ++j) {
+      of_k *= static_cast<double>(k - j + 1) / j;
+      control += of_k / kOfFive[static_cast<size_t>(j)] * piece.coefficients(j, joint);
+    }
+    low = std::min(low, control);
+    high = std::max(high, control);
+    if (!std::isfinite(control)) return control;
+  }
+  return high - low;
+}
+
 /// Walks along the curve and keeps what it has proven.
 class Marcher {
  public:
@@ -72,9 +106,10 @@ class Marcher {
       // The rest in equal steps, so that no stub is left at the end.
       const double steps = std::ceil((length - s_) / step_ * (1.0 - 1e-9));
       const double next = steps <= 1.0 ? length : s_ + (length - s_) / steps;
-      if (next - s_ < kShortestStep * length && next < length) fail();
+      // Written so that NaN fails.
+      if (!(next - s_ >= kShortestStep * length || next >= length)) fail();
       if (!advance(next)) continue;
-      if (result_.pieces.size() > kMostPieces) fail();
+      if (result_.pieces.size() > kMostPieces || far_beyond_limit()) fail();
     }
     if (crossing_) throw_limit_crossing(arm_, *crossing_, crossing_share_, options_);
     return std::move(result_);
@@ -95,6 +130,30 @@ class Marcher {
     throw MotionError(std::move(problem));
   }
 
+  /// Whether the sweep of every free revolute joint is what following the curve takes.
+  bool sweeps_little(const JointPiece& piece) const {
+    for (int i = 0; i < follower_.free_joints(); ++i) {
+      if (arm_.type(i) != JointType::kRevolute) continue;
+      const double net = std::abs(piece.coefficients.col(i).tail<5>().sum());
+      // Written so that NaN sweeps too much.
+      if (!(sweep_bound(piece, i) <= std::min(kSweepFactor * net + kSweepFloor, kMostSweep))) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  /// How far the free revolute joints are extrapolated [rad].
+  double reach_ahead(const JointVector& guess) const {
+    double farthest = 0.0;
+    for (int i = 0; i < follower_.free_joints(); ++i) {
+      if (arm_.type(i) != JointType::kRevolute) continue;
+      const double ahead = std::abs(guess[i] - here_.point.q[i]);
+      if (!(ahead <= farthest)) farthest = ahead;
+    }
+    return farthest;
+  }
+
   [[noreturn]] void fail() const {
     if (crossing_) throw_limit_crossing(arm_, *crossing_, crossing_share_, options_);
     throw_insertion_failure(follower_, curve_, here_.point, s_, options_);
@@ -105,12 +164,21 @@ class Marcher {
     const double h = next - s_;
     const PathPoint& from = here_.point;
     const JointVector guess = from.q + h * (from.q1 + 0.5 * h * from.q2);
+    const double ahead = reach_ahead(guess);
+    if (!(ahead <= kMostSweep)) {
+      step_ = h * (std::isfinite(ahead) ? std::clamp(kMostSweep / ahead, 0.1, 0.8) : 0.1);
+      return false;
+    }
     const std::optional<CurveFollower::Knot> knot = follower_.solve(next, guess);
     if (!knot || knot->rate_residual > kRateResidual) {
       step_ = 0.5 * h;
       return false;
     }
     JointPiece piece = JointPiece::hermite(from, knot->point, h);
+    if (!sweeps_little(piece)) {
+      step_ = 0.5 * h;
+      return false;
+    }
     // Three samples tell quickly, and how much shorter; only the proof counts in the end.
     double ratio = 0.0;
     for (const double u : {0.5, 0.25, 0.75}) {
@@ -144,11 +212,18 @@ class Marcher {
     s_ = next;
   }
 
+  /// Enough is known of how far beyond a limit the curve leads.
+  bool far_beyond_limit() const {
+    return crossing_ && (result_.pieces.size() > last_within_ + kMostPiecesBeyond ||
+                         std::abs(crossing_->value - crossing_->limit) > kFarBeyond);
+  }
+
   /// A breach is told at the end: only then is known how far beyond the limit the joint would go.
   void hold_limits(const JointPiece& piece) {
     if (!crossing_) {
       crossing_ = piece_position_violation(piece, limits_);
       if (crossing_) crossing_share_ = (s_ + crossing_->s) / curve_.length();
+      last_within_ = result_.pieces.size();
       return;
     }
     const double value = farthest_value(piece, limits_, *crossing_);
@@ -168,6 +243,7 @@ class Marcher {
   Insertion result_;
   std::optional<LimitCrossing> crossing_;
   double crossing_share_ = 0.0;
+  size_t last_within_ = 0;  ///< pieces before the one that crosses
   double s_ = 0.0;
   double step_;
 };
@@ -178,6 +254,7 @@ Insertion insert_curve(const ForwardKinematics& arm, const JointLimits& limits,
                        const TaskCurve& curve, const JointVector& start,
                        const InsertionOptions& options) {
   check_arguments(arm, limits, curve, start, options);
+  refuse_far_goal(arm, limits, curve, start, kFarGoal);
   return Marcher(arm, limits, curve, start, options).run();
 }
 

@@ -1,5 +1,6 @@
 #include "path/insertion_failure.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -23,6 +24,9 @@ constexpr int kProbeStarts = 24;
 constexpr unsigned kProbeSeed = 1;
 /// Smallest over largest singular value above which the arm counts as clear of singularities.
 constexpr double kClearOfSingularity = 1e-2;
+
+/// Halvings that tell where a curve leaves the reach, to rounding.
+constexpr int kShareHalvings = 60;
 
 constexpr const char* kWristWayOut =
     "keep the tool position straight and interpolate the wrist joints (orientation=\"wrist\")";
@@ -69,6 +73,24 @@ std::string coordinate_names(const Twist& miss) {
     names += kNames[static_cast<size_t>(i)];
   }
   return names;
+}
+
+/// The stretched chain from the first joint to the tool, which nothing can be farther than [m].
+double length_of_chain(const ForwardKinematics& arm, const JointLimits& limits,
+                       const JointVector& start) {
+  const ChainFrames frames = arm.frames(start);
+  double length = 0.0;
+  for (int i = 0; i < arm.joints(); ++i) {
+    const Eigen::Vector3d& here = frames.origin[static_cast<size_t>(i)];
+    const Eigen::Vector3d next = i + 1 < arm.joints() ? frames.origin[static_cast<size_t>(i + 1)]
+                                                      : frames.pose_base_tool.translation();
+    length += (next - here).norm();
+    if (arm.type(i) == JointType::kPrismatic) {
+      length += std::abs(start[i]) +
+                std::max(std::abs(limits.position_min[i]), std::abs(limits.position_max[i]));
+    }
+  }
+  return length;
 }
 
 Problem too_few_joints(const CurveFollower& follower, const Ahead& ahead, double share) {
@@ -135,6 +157,32 @@ void throw_insertion_failure(const CurveFollower& follower, const TaskCurve& cur
     problem = out_of_reach(ahead, share, options);
   }
   problem.share = share;
+  throw MotionError(std::move(problem));
+}
+
+void refuse_far_goal(const ForwardKinematics& arm, const JointLimits& limits,
+                     const TaskCurve& curve, const JointVector& start, double factor) {
+  const double reach = length_of_chain(arm, limits, start);
+  const Eigen::Vector3d base = arm.frames(start).origin[0];
+  // The norm that does not overflow; written so that NaN is refused.
+  const auto distance = [&](double s) { return (curve.at(s).p - base).stableNorm(); };
+  const double goal = distance(curve.length());
+  if (goal <= factor * reach) return;
+  double within = 0.0;
+  double beyond = 1.0;
+  for (int halving = 0; halving < kShareHalvings; ++halving) {
+    const double middle = 0.5 * (within + beyond);
+    (distance(middle * curve.length()) <= reach ? within : beyond) = middle;
+  }
+  Problem problem;
+  problem.code = ErrorCode::kUnreachable;
+  problem.message =
+      format("the curve leads to %.3g m from the first joint, and the arm reaches %.3g m at most",
+             goal, reach);
+  problem.share = beyond;
+  problem.value = goal;
+  problem.limit = reach;
+  problem.ways_out = {"give the position in metres, within the reach of the arm"};
   throw MotionError(std::move(problem));
 }
 

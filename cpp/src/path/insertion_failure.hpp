@@ -13,6 +13,12 @@ namespace viapoint {
                                           const PathPoint& here, double s,
                                           const InsertionOptions& options);
 
+/// Refuses a curve whose end lies more than `factor` times as far from the first joint as the arm
+/// reaches (kUnreachable), so that nobody walks towards it. Nothing is refused where a prismatic
+/// joint has no end.
+void refuse_far_goal(const ForwardKinematics& arm, const JointLimits& limits,
+                     const TaskCurve& curve, const JointVector& start, double factor);
+
 /// @param share of the curve where the limit is crossed
 [[noreturn]] void throw_limit_crossing(const ForwardKinematics& arm, const LimitCrossing& crossing,
                                        double share, const InsertionOptions& options);

@@ -21,7 +21,7 @@ LineCurve::LineCurve(const Pose& from, const Pose& to)
       rate_(Eigen::Vector3d::Zero()) {
   const Eigen::Vector3d travel = to.translation() - from.translation();
   const Eigen::Vector3d turn = rotation_log(to.linear() * from.linear().transpose());
-  length_ = travel.norm() > kTravelFloor ? travel.norm() : turn.norm();
+  length_ = travel.stableNorm() > kTravelFloor ? travel.stableNorm() : turn.norm();
   half_turn_ = turn.norm() >= kPi - kHalfTurnSlack;
   if (length_ > 0.0) {
     direction_ = travel / length_;

@@ -57,6 +57,42 @@ TEST(InsertCurve, TellsWhereTheLineLeavesTheWorkspace) {
   EXPECT_GT(*problem->value, 0.0);
 }
 
+TEST(InsertCurve, RefusesAGoalFarBeyondTheArmAtOnce) {
+  const ForwardKinematics arm = testing::puma560();
+  const JointVector q0 = joints_in_degrees({10, 40, 20, 30, 40, 10});
+  const Pose from = arm.pose(q0);
+  for (const double far : {1e3, 1e9, 1e154, 1e155, 1e300}) {
+    SCOPED_TRACE(far);
+    const LineCurve curve = LineCurve::fixed_orientation(from, Eigen::Vector3d(far, 0.0, -far));
+    const auto problem = problem_of(arm, testing::puma560_limits(), curve, q0);
+    ASSERT_TRUE(problem);
+    EXPECT_EQ(problem->code, ErrorCode::kUnreachable);
+    EXPECT_NEAR(*problem->value / far, std::sqrt(2.0), 1e-9);
+    // 0.149 + 0.432 + |(0.02, 0.149)| + 0.433 holds every stretch of the arm.
+    EXPECT_LT(*problem->limit, 1.2);
+    EXPECT_GT(*problem->limit, 0.865);
+    ASSERT_TRUE(problem->share);
+    EXPECT_LT(*problem->share, std::max(2.0 / far, 1e-18));
+  }
+}
+
+TEST(InsertCurve, EndsOnHugeTargetsOfAnArmWithoutAReach) {
+  JointLimits limits = testing::no_position_limits(3);
+  const ForwardKinematics arm = testing::rpp();
+  JointVector q(3);
+  q << 0.0, 0.0, 0.2;
+  InsertionOptions options;
+  options.hold = Hold::kPosition;
+  for (const double far : {1e20, 1e155, 1e300}) {
+    SCOPED_TRACE(far);
+    const Pose from = arm.pose(q);
+    const LineCurve curve = LineCurve::fixed_orientation(from, Eigen::Vector3d(far, far, 0.5));
+    const auto problem = problem_of(arm, limits, curve, q, options);
+    ASSERT_TRUE(problem);
+    EXPECT_TRUE(problem->share.has_value());
+  }
+}
+
 TEST(InsertCurve, TellsTheHoleAroundTheFirstAxis) {
   const ForwardKinematics arm = testing::puma560();
   const JointVector q0 = joints_in_degrees({0, -20, 100, 10, 40, 10});

@@ -43,10 +43,14 @@ struct Insertion {
 /// polynomial).
 /// @throws MotionError with `share` of the curve and, where it applies, joint, value, limit:
 ///   kJointLimit, kCouplingLimit (first place where a limit is left), kSingular (the joints cannot
-///   follow: rate beyond all bounds), kUnreachable (the curve leaves the workspace), kUncontrolled
+///   follow: rate beyond all bounds), kUnreachable (the curve leaves the workspace, or leads so far
+///   away that it must: then value is the goal's distance, limit the reach), kUncontrolled
 ///   (the arm has too few joints to hold the coordinates; names them), kZeroLength, kDiscontinuous
 ///   (start is not on the curve), kBadArgument
-/// For a limit, `value` is the farthest that the joint would go along the rest of the curve.
+/// For a limit, `value` is the farthest that the joint would go along the rest of the curve,
+/// followed until the limit is passed by 2π [rad, m], or for 1000 pieces more. Where the tool
+/// hardly tells how joints turn (a singular wrist), a piece counts only when no free revolute joint
+/// sweeps much more over it than it changes, nor more than 1 rad.
 [[nodiscard]] Insertion insert_curve(const ForwardKinematics& arm, const JointLimits& limits,
                                      const TaskCurve& curve, const JointVector& start,
                                      const InsertionOptions& options);

@@ -1,0 +1,167 @@
+/// @file
+/// Lines that begin close by the singular wrist, where joints 4 and 6 turn against each other
+/// without moving the tool: the joints must follow the curve, not only the tool.
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <cmath>
+#include <vector>
+
+#include "path/insertion_checks.hpp"
+#include "viapoint/path/insertion.hpp"
+
+namespace viapoint {
+namespace {
+
+using testing::expect_sound;
+using testing::RandomLine;
+
+/// Joints at increasing s.
+struct Track {
+  std::vector<double> s;
+  std::vector<JointVector> q;
+  bool complete = false;
+};
+
+/// Newton's method with the inverse of the whole Jacobian, in steps in which no joint moves by more
+/// than `most` [rad]. Stops, incomplete, where such steps become too short for doubles.
+Track track_densely(const ForwardKinematics& arm, const TaskCurve& curve, const JointVector& start,
+                    double most) {
+  Track track;
+  track.s.push_back(0.0);
+  track.q.push_back(start);
+  const double length = curve.length();
+  double step = 1e-13 * length;
+  double s = 0.0;
+  JointVector q = start;
+  while (s < length) {
+    const double next = std::min(s + step, length);
+    const CurvePoint wanted = curve.at(next);
+    JointVector trial = q;
+    double size = 1.0;
+    for (int i = 0; i < 8 && size > 1e-13; ++i) {
+      const ChainFrames frames = arm.frames(trial);
+      Eigen::Matrix<double, 6, 1> miss;
+      miss << wanted.p - frames.pose_base_tool.translation(),
+          rotation_log(wanted.rotation * frames.pose_base_tool.linear().transpose());
+      size = miss.norm();
+      const Eigen::Matrix<double, 6, 6> jacobian = arm.jacobian(frames);
+      trial += jacobian.partialPivLu().solve(miss);
+      if (!((trial - q).lpNorm<Eigen::Infinity>() <= 2.0 * most)) break;
+    }
+    const double moved = (trial - q).lpNorm<Eigen::Infinity>();
+    if (!(moved <= most) || !(size <= 1e-10)) {
+      step *= 0.5;
+      if (step < 1e-14 * length) return track;
+      continue;
+    }
+    s = next;
+    q = trial;
+    track.s.push_back(s);
+    track.q.push_back(q);
+    step = std::min(step * (moved < 0.5 * most ? 1.3 : 1.0), 4e-3 * length);
+  }
+  track.complete = true;
+  return track;
+}
+
+/// How far each joint sweeps over the pieces.
+JointVector sweep_of(const std::vector<JointPiece>& pieces) {
+  JointVector low = pieces.front().at(0.0).q;
+  JointVector high = low;
+  for (const JointPiece& piece : pieces) {
+    for (int i = 0; i <= 50; ++i) {
+      const JointVector q = piece.at(piece.length * i / 50).q;
+      low = low.cwiseMin(q);
+      high = high.cwiseMax(q);
+    }
+  }
+  return high - low;
+}
+
+JointVector sweep_of(const Track& track) {
+  JointVector low = track.q.front();
+  JointVector high = low;
+  for (const JointVector& q : track.q) {
+    low = low.cwiseMin(q);
+    high = high.cwiseMax(q);
+  }
+  return high - low;
+}
+
+/// A line in a random direction from joints whose joint 5 is between 1e-9 and 1e-3.
+RandomLine line_from_singular_wrist(const ForwardKinematics& arm, unsigned seed) {
+  std::mt19937 random(seed);
+  JointVector start = testing::random_joints(random, testing::puma560_limits());
+  start[4] = std::pow(10.0, std::uniform_real_distribution<double>(-9.0, -3.0)(random));
+  std::normal_distribution<double> normal;
+  Eigen::Vector3d travel(normal(random), normal(random), normal(random));
+  travel *=
+      std::pow(10.0, std::uniform_real_distribution<double>(-3.0, -0.7)(random)) / travel.norm();
+  const Pose from = arm.pose(start);
+  return {start, LineCurve::fixed_orientation(from, from.translation() + travel)};
+}
+
+TEST(WristSingularity, JointsTurnNoFartherThanFollowingTheLineTakes) {
+  const ForwardKinematics arm = testing::puma560();
+  const JointLimits limits = testing::no_position_limits(6);
+  int same = 0;
+  int flipped = 0;
+  int refused = 0;
+  for (unsigned seed = 0; seed < 2000; ++seed) {
+    SCOPED_TRACE(seed);
+    const RandomLine line = line_from_singular_wrist(arm, seed);
+    Insertion found;
+    try {
+      found = insert_curve(arm, limits, line.curve, line.start, {});
+    } catch (const MotionError& error) {
+      ASSERT_TRUE(error.code() == ErrorCode::kUnreachable || error.code() == ErrorCode::kSingular)
+          << error.what();
+      if (error.code() == ErrorCode::kSingular) ++refused;
+      continue;
+    }
+    ASSERT_NO_FATAL_FAILURE(expect_sound(arm, limits, line.curve, found, {}, 20));
+    const Track track = track_densely(arm, line.curve, line.start, 0.05);
+    ASSERT_TRUE(track.complete);
+    const JointVector longer = sweep_of(found.pieces) - sweep_of(track);
+    ASSERT_LT(longer.maxCoeff(), 0.1) << longer.transpose();
+    // The end is that of the dense track, or its other wrist: a line that leads nearly through
+    // q5 = 0 may go straight on there, within the tolerance of the angle, where q4 would turn half.
+    const JointVector& end = found.knots.back();
+    JointVector other = track.q.back();
+    other[4] = -other[4];
+    for (const int i : {3, 5}) other[i] += other[i] < end[i] ? kPi : -kPi;
+    if ((end - track.q.back()).lpNorm<Eigen::Infinity>() < 0.01) {
+      ++same;
+    } else {
+      ASSERT_LT((end - other).lpNorm<Eigen::Infinity>(), 0.01)
+          << end.transpose() << " or " << track.q.back().transpose();
+      ++flipped;
+    }
+  }
+  EXPECT_GT(same, 1500);
+  EXPECT_LT(flipped, 50);
+  EXPECT_LT(refused, 100);
+}
+
+TEST(WristSingularity, DoesNotSpinJoint4HoweverSmallQ5Is) {
+  const ForwardKinematics arm = testing::puma560();
+  JointVector start(6);
+  start << 2.6, -0.47, 0.035, 2.0, 1e-6, -0.086;
+  for (const double q5 : {1e-3, 1e-5, 1e-6, 1e-7}) {
+    SCOPED_TRACE(q5);
+    start[4] = q5;
+    const Pose from = arm.pose(start);
+    const LineCurve curve = LineCurve::fixed_orientation(
+        from, from.translation() + Eigen::Vector3d(0.004, 0.026, -0.016));
+    const Insertion found = insert_curve(arm, testing::no_position_limits(6), curve, start, {});
+    const Track track = track_densely(arm, curve, start, 0.01);
+    ASSERT_TRUE(track.complete);
+    EXPECT_LT((sweep_of(found.pieces) - sweep_of(track)).maxCoeff(), 0.05);
+    EXPECT_LT((found.knots.back() - track.q.back()).lpNorm<Eigen::Infinity>(), 1e-3);
+    EXPECT_LT(found.pieces.size(), 40u);
+  }
+}
+
+}  // namespace
+}  // namespace viapoint
