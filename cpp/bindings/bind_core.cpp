@@ -27,7 +27,6 @@ Pose pose_from(const Eigen::Matrix4d& matrix) { return checked_pose(matrix).pose
 
 void bind_core(py::module_& m) {
   m.attr("MAX_JOINTS") = kMaxJoints;
-  m.attr("ROTATION_ROUNDING") = kRotationRounding;
   m.def(
       "checked_pose",
       [](const Eigen::Matrix4d& matrix) {
@@ -36,12 +35,6 @@ void bind_core(py::module_& m) {
       },
       py::arg("matrix"),
       "The pose with its rotation made exact, and the largest element by which it was changed.");
-  m.def(
-      "rotation_log", [](const Eigen::Matrix3d& rotation) { return rotation_log(rotation); },
-      py::arg("rotation"), "Rotation vector [rad] of a rotation matrix.");
-  m.def(
-      "rotation_exp", [](const Eigen::Vector3d& vector) { return rotation_exp(vector); },
-      py::arg("vector"), "Rotation matrix of a rotation vector [rad].");
   m.def(
       "write_file_atomically",
       [](const std::string& path, const std::string& content) {

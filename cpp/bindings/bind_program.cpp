@@ -30,24 +30,6 @@ TimedSpace space_from(const std::string& name) {
                     {"Use \"joint\" or \"cartesian\"."});
 }
 
-const Step& step_at(const MotionProgram& program, int index) {
-  if (index < 0 || index >= static_cast<int>(program.steps.size())) {
-    throw py::index_error("the program has no step " + std::to_string(index));
-  }
-  return program.steps[static_cast<size_t>(index)];
-}
-
-std::string kind_of(const Step& step) {
-  struct Name {
-    std::string operator()(const PtpMove&) const { return "movej"; }
-    std::string operator()(const LinMove&) const { return "movel"; }
-    std::string operator()(const Wait&) const { return "wait"; }
-    std::string operator()(const SetOutput&) const { return "set_do"; }
-    std::string operator()(const TimedMove&) const { return "timed"; }
-  };
-  return std::visit(Name{}, step.what);
-}
-
 using TargetRow = std::tuple<int, std::string, Eigen::MatrixXd>;
 
 TargetRow row_of(int step, const Target& target) {
@@ -121,6 +103,7 @@ void bind_program(py::module_& m) {
              return MotionProgram{robot.robot->name(),
                                   robot.robot->fingerprint(),
                                   joints_from(start, "start", robot.robot->joints()),
+                                  {},
                                   {}};
            }),
            py::arg("robot"), py::arg("start"))
@@ -129,16 +112,6 @@ void bind_program(py::module_& m) {
       .def_property_readonly("start",
                              [](const MotionProgram& p) { return Eigen::VectorXd(p.start); })
       .def("__len__", [](const MotionProgram& p) { return p.steps.size(); })
-      .def(
-          "kind", [](const MotionProgram& p, int step) { return kind_of(step_at(p, step)); },
-          py::arg("step"), "\"movej\", \"movel\", \"wait\", \"set_do\" or \"timed\".")
-      .def(
-          "source",
-          [](const MotionProgram& p, int step) {
-            const SourceLine& source = step_at(p, step).source;
-            return std::pair<std::string, int>(source.file, source.line);
-          },
-          py::arg("step"), "File and line (from 1; 0 where unknown) of a step.")
       .def("targets", &targets_of, "Step, kind of target and its array, for every target.")
       .def(
           "add_movej",
@@ -180,7 +153,6 @@ void bind_program(py::module_& m) {
           py::arg("points"), py::arg("t_acc"), py::arg("space"), py::arg("file"), py::arg("line"))
       .def("to_json", [](const MotionProgram& p) { return to_json(p); })
       .def("save", &save_program, py::arg("path"));
-  m.def("program_from_json", &program_from_json, py::arg("text"), py::arg("source"));
   m.def("load_program", &load_program, py::arg("path"));
 }
 

@@ -1,4 +1,5 @@
 // The 2 ms loop on a simulated drive, its jobs and logs, and runs in virtual time.
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <tuple>
@@ -45,8 +46,7 @@ struct LogHandle {
   int joints = 0;
 };
 
-LoopHandle make_loop(const RobotHandle& robot, const Vector& start, double cycle, int priority,
-                     bool lock_memory) {
+LoopHandle make_loop(const RobotHandle& robot, const Vector& start, double cycle) {
   if (!(cycle >= 1e-4) || !(cycle <= 1.0)) {
     throw MotionError(ErrorCode::kBadArgument,
                       "cycle is " + std::to_string(cycle) + " s; allowed are 0.0001 s to 1 s.");
@@ -55,8 +55,6 @@ LoopHandle make_loop(const RobotHandle& robot, const Vector& start, double cycle
   const JointVector q = joints_from(start, "start", joints);
   LoopOptions options;
   options.cycle = std::chrono::nanoseconds(std::llround(cycle * 1e9));
-  options.priority = priority;
-  options.lock_memory = lock_memory;
   const Release release;
   return {std::make_shared<ControllerLoop>(std::make_unique<SimulatedDrive>(q),
                                            robot.robot->limits(), options),
@@ -136,6 +134,14 @@ void bind_log(py::module_& m) {
       .def("__len__", [](const LogHandle& log) { return log.records.size(); })
       .def("columns", &columns_of, "A dict of arrays, one row a cycle.")
       .def(
+          "head",
+          [](const LogHandle& log, size_t count) {
+            const auto end = std::min(count, log.records.size());
+            return LogHandle{{log.records.begin(), log.records.begin() + static_cast<long>(end)},
+                             log.joints};
+          },
+          py::arg("count"), "The first `count` cycles.")
+      .def(
           "save_csv",
           [](const LogHandle& log, const std::string& path) { write_log_csv(path, log.records); },
           py::arg("path"), py::call_guard<Release>(),
@@ -153,7 +159,11 @@ void bind_job(py::module_& m) {
       .def_readonly("compute_p50", &RunReport::compute_p50)
       .def_readonly("compute_p99", &RunReport::compute_p99)
       .def_readonly("compute_max", &RunReport::compute_max)
-      .def_readonly("wall_time", &RunReport::wall_time, "First to last cycle.");
+      .def_readonly("wall_time", &RunReport::wall_time, "First to last cycle.")
+      .def_readonly("missed_cycles", &RunReport::missed_cycles,
+                    "Cycles that overruns slept through.")
+      .def_readonly("lost_records", &RunReport::lost_records,
+                    "Cycles that found no room in the log.");
   py::class_<JobHandle>(m, "Job", "One motion under way.")
       .def(
           "wait", [](const JobHandle& j, double timeout) { return j.job->wait(timeout); },
@@ -180,11 +190,12 @@ void bind_job(py::module_& m) {
 }  // namespace
 
 void bind_realtime(py::module_& m) {
+  m.attr("CYCLE") = std::chrono::duration<double>(LoopOptions{}.cycle).count();
   bind_log(m);
   bind_job(m);
   py::class_<LoopHandle>(m, "ControllerLoop", "The 2 ms loop over a simulated drive.")
       .def(py::init(&make_loop), py::arg("robot"), py::arg("start"), py::kw_only(),
-           py::arg("cycle"), py::arg("priority"), py::arg("lock_memory"))
+           py::arg("cycle"))
       .def(
           "run",
           [](const LoopHandle& l, const MotionHandle& motion) {

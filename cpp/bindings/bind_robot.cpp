@@ -172,15 +172,20 @@ void bind_inverse(py::class_<RobotHandle>& robot) {
       .def(
           "ik_near",
           [](const RobotHandle& r, const Eigen::Matrix4d& pose, const Vector& near) {
-            return Vector(inverse_of(r).solve_near(pose_from(pose),
-                                                   joints_from(near, "near", r.robot->joints())));
+            const Pose target = pose_from(pose);
+            const JointVector reference = joints_from(near, "near", r.robot->joints());
+            const InverseKinematics& inverse = inverse_of(r);
+            const py::gil_scoped_release release;
+            return Vector(inverse.solve_near(target, reference));
           },
           py::arg("pose"), py::arg("near"))
       .def(
           "ik_near_position",
           [](const RobotHandle& r, const Eigen::Vector3d& position, const Vector& near) {
-            return Vector(
-                inverse_of(r).solve_near(position, joints_from(near, "near", r.robot->joints())));
+            const JointVector reference = joints_from(near, "near", r.robot->joints());
+            const InverseKinematics& inverse = inverse_of(r);
+            const py::gil_scoped_release release;
+            return Vector(inverse.solve_near(position, reference));
           },
           py::arg("position"), py::arg("near"));
 }
@@ -233,6 +238,9 @@ void bind_robot(py::module_& m) {
                              [](const RobotHandle& r) { return r.robot->has_kinematics(); })
       .def_property_readonly("fingerprint",
                              [](const RobotHandle& r) { return r.robot->fingerprint(); })
+      .def(
+          "to_yaml", [](const RobotHandle& r) { return to_yaml(r.robot->description()); },
+          "The description as a .yaml file that reads back to the same numbers.")
       .def(
           "with_limits",
           [](const RobotHandle& r, const JointLimits& limits) {

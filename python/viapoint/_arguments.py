@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import math
 import numbers
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from .errors import BadArgumentError, NotARotationError
+from .errors import BadArgumentError, FileError, NotARotationError
 
 Vector: TypeAlias = npt.NDArray[np.float64]
 ArrayLike: TypeAlias = npt.ArrayLike
@@ -141,6 +144,26 @@ def choice(value: object, name: str, allowed: tuple[str, ...]) -> str:
         return value
     words = ", ".join(f'"{word}"' for word in allowed)
     raise BadArgumentError(f"{name} is {_short(value)}; it must be one of {words}.")
+
+
+@contextmanager
+def writing(path: str | os.PathLike[str]) -> Iterator[None]:
+    """Name the file in what the system says against writing it.
+
+    Raises
+    ------
+    FileError
+        With the path and the system's reason.
+    """
+    try:
+        yield
+    except OSError as error:
+        name = os.fspath(path)
+        raise FileError(
+            f"{name} cannot be written: {error.strerror or error}.",
+            file=name,
+            ways_out=["Give a file in a folder that exists and may be written to."],
+        ) from error
 
 
 def _short(value: object) -> str:

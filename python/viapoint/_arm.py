@@ -13,16 +13,13 @@ from . import _core, _session
 from ._arguments import ArrayLike, Vector, number, vector
 from ._job import Execution, Job
 from ._motion import CYCLE, Motion
-from ._program import Program
-from ._robot import Robot, load_robot
+from ._program import Program, motion_of
+from ._robot import Robot, load_robot, require_robot, require_within_limits
 from ._virtual import VirtualLoop
 from .errors import BadArgumentError, StoppedError
 
 if TYPE_CHECKING:
     from ._points import PointList
-
-PRIORITY = 80
-"""SCHED_FIFO priority of the loop, where the system permits it."""
 
 
 class Loop(Protocol):
@@ -114,7 +111,7 @@ class Arm:
         StoppedError
             The run that was waited for was stopped before its end.
         """
-        motion = _planned(program)
+        motion = motion_of(program)
         if motion.robot.fingerprint != self.robot.fingerprint:
             raise BadArgumentError(
                 f'The program is for the robot "{motion.robot.name}" and its limits, the arm is '
@@ -228,10 +225,17 @@ def connect(
     Raises
     ------
     BadArgumentError
-        Not such a url, or a start that does not fit.
+        Not such a url, a start that does not fit, a cycle that is not 0.1 ms to 1 s.
+    JointLimitError, CouplingLimitError
+        A start outside the robot's limits.
     BadRobotError
         No such robot.
     """
+    if not isinstance(url, str):
+        raise BadArgumentError(f'url is {url!r}; it must be text such as "sim://puma560".')
+    if robot is not None:
+        require_robot(robot)
+    period = number(cycle, "cycle", "s", least=1e-4, most=1.0)
     parts = urlsplit(url)
     if parts.scheme != "sim" or not (parts.netloc or parts.path):
         raise BadArgumentError(
@@ -244,12 +248,10 @@ def connect(
         joints = vector(start, "start", arm_robot.joints)
     elif parts.query:
         joints = _start_of(parts.query, arm_robot.joints)
+    require_within_limits(arm_robot, joints, "start", ["Say where the arm stands: start=[…]."])
     if _session.current().virtual:
-        return Arm(arm_robot, VirtualLoop(joints, cycle), cycle)
-    loop = _core.ControllerLoop(
-        arm_robot._core, joints, cycle=cycle, priority=PRIORITY, lock_memory=True
-    )
-    return Arm(arm_robot, loop, cycle)
+        return Arm(arm_robot, VirtualLoop(joints, period), period)
+    return Arm(arm_robot, _core.ControllerLoop(arm_robot._core, joints, cycle=period), period)
 
 
 def _start_of(query: str, joints: int) -> Vector:
@@ -261,11 +263,3 @@ def _start_of(query: str, joints: int) -> Vector:
     except ValueError:
         values = [math.nan]
     return vector(values, "start", joints)
-
-
-def _planned(program: Program | Motion) -> Motion:
-    if isinstance(program, Motion):
-        return program
-    if isinstance(program, Program):
-        return program.plan()
-    raise BadArgumentError(f"program is {program!r}; it must be a Program or a Motion.")

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import time
+import math
 from dataclasses import dataclass
 from typing import Protocol
 
 from . import _core, _session
+from ._arguments import number
 from ._motion import CYCLE, Motion
 from ._run_log import RunLog
 
@@ -50,6 +51,10 @@ class RunReport:
         The tick itself [s].
     wall_time : float
         First to last cycle [s].
+    missed_cycles : int
+        Cycles of the clock that overruns slept through: the run is later by so many.
+    lost_records : int
+        Cycles that found no room in the log.
     """
 
     cycles: int
@@ -61,6 +66,8 @@ class RunReport:
     compute_p99: float
     compute_max: float
     wall_time: float
+    missed_cycles: int
+    lost_records: int
 
 
 class Job:
@@ -124,7 +131,7 @@ class Job:
         Parameters
         ----------
         timeout : float, optional
-            At most so long [s]; for ever when left out.
+            At most so long [s], 0 or longer; for ever when left out.
 
         Returns
         -------
@@ -133,21 +140,25 @@ class Job:
 
         Raises
         ------
+        BadArgumentError
+            A timeout that is no number, negative or not finite.
         DriveFaultError
             The drive failed.
         """
-        deadline = None if timeout is None else time.monotonic() + timeout
+        left = math.inf if timeout is None else number(timeout, "timeout", "s", least=0.0)
         session = _session.current()
         try:
             while True:
-                left = _SLICE if deadline is None else deadline - time.monotonic()
-                if self._execution.wait(max(0.0, min(left, _SLICE))):
+                # Counted in slices, not on a clock: virtual time has none.
+                part = min(left, _SLICE)
+                if self._execution.wait(part):
                     self._seen_to_end = True
                     session.waiting(self)
                     session.ended(self)
                     return True
                 session.waiting(self)
-                if deadline is not None and left <= _SLICE:
+                left -= part
+                if left <= 0.0:
                     return False
         except BaseException:
             self._come_to_rest()
@@ -180,9 +191,12 @@ class Job:
         """See the job to its end, unless that was done; stopped first, if asked or if it pauses."""
         if self._seen_to_end:
             return
-        if stop or self.state in ("pausing", "paused"):
+        if stop:
             self.stop()
-        self.wait()
+        # A pause may be a cycle old, and an override of 0 reached only later: look again and again.
+        while not self.wait(_SLICE):
+            if self.state in ("pausing", "paused"):
+                self.stop()
 
     def _come_to_rest(self) -> None:
         """Stop and wait; a fault meanwhile is the drive's, which is then at rest, too."""

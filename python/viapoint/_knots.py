@@ -8,7 +8,7 @@ import numpy as np
 
 from . import _core
 from ._arguments import ArrayLike, choice, number, pose, vector
-from ._robot import Robot
+from ._robot import Robot, require_robot
 
 
 def insert_knots(
@@ -51,6 +51,7 @@ def insert_knots(
     BadArgumentError, NotARotationError
         By the argument's name.
     """
+    require_robot(robot)
     kind = choice(method, "method", ("certified", "taylor"))
     reference = np.zeros(robot.joints) if near is None else vector(near, "near", robot.joints)
     return _core.insert_knots(

@@ -5,16 +5,19 @@ from __future__ import annotations
 import os
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from . import _core
 from ._arguments import ArrayLike, Vector, number, numbers_of
 from ._report import Report
 from ._robot import Robot
 from ._samples import Samples
+from .errors import BadArgumentError
 
 if TYPE_CHECKING:
     from ._program import Program
 
-CYCLE = 0.002
+CYCLE: float = _core.CYCLE
 """The controller's cycle [s]."""
 
 
@@ -108,8 +111,11 @@ class Motion:
         Raises
         ------
         BadArgumentError
-            Not ascending, or not finite.
+            No numbers at all, not ascending, or not finite.
         """
+        instants = np.asarray(times)
+        if instants.size == 0:
+            raise BadArgumentError("times is empty; it must hold one instant or more.")
         return self._samples(self._core.sample_at(numbers_of(times, "times").reshape(-1)))
 
     def _samples(self, columns: dict[str, Vector]) -> Samples:
@@ -129,7 +135,9 @@ class Motion:
         Raises
         ------
         BadArgumentError
-            Another word for `what`.
+            Another word for `what`, or another ending of the file.
+        FileError
+            The file cannot be written.
         UncontrolledError
             "tool" or "path" of a robot without kinematics.
         """

@@ -6,6 +6,7 @@ import re
 from pathlib import Path
 
 import numpy as np
+from rich.markup import escape
 from rich.table import Table
 
 from ._job import Job
@@ -35,6 +36,10 @@ def run_tables(job: Job) -> list[Table]:
     table.add_row("path deviation, proven", f"{1e3 * certificate.path_deviation:.4f} mm")
     table.add_row("corner cut, proven", f"{1e3 * certificate.zone_deviation:.2f} mm")
     table.add_row("cycles / overruns", f"{report.cycles} / {report.overruns}")
+    if report.missed_cycles:
+        table.add_row("cycles slept through", str(report.missed_cycles))
+    if report.lost_records:
+        table.add_row("cycles missing in the log", str(report.lost_records))
     if not np.isnan(report.latency_p50):
         table.add_row(
             "wake-up latency p50 / p99 / max",
@@ -81,7 +86,7 @@ def write_pictures(motion: Motion, folder: Path, stem: str) -> list[Path]:
 
 
 def _headed(title: str) -> Table:
-    table = Table(title=title, title_justify="left", title_style="bold", show_header=False)
+    table = Table(title=escape(title), title_justify="left", title_style="bold", show_header=False)
     table.add_column()
     table.add_column(justify="right")
     return table

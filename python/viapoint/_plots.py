@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,8 +12,9 @@ import numpy.typing as npt
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from ._arguments import Vector, choice
+from ._arguments import Vector, choice, writing
 from ._samples import Samples
+from .errors import BadArgumentError
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -27,10 +29,16 @@ AXIS_COLOURS = ("#c0392b", "#2e8b57", "#1f5fa8")
 PIXELS_PER_INCH = 110
 MOST_SAMPLES = 4000
 
+ENDINGS = (".png", ".svg", ".pdf")
+
 
 def save_plot(motion: Motion, path: str | os.PathLike[str], what: str) -> None:
     """Draw one picture of a planned motion into a file."""
     kind = choice(what, "what", ("joints", "tool", "path"))
+    if Path(path).suffix not in ENDINGS:
+        raise BadArgumentError(
+            f'path is "{os.fspath(path)}"; a picture ends in {", ".join(ENDINGS)}.'
+        )
     samples = motion.sample(max(0.001, motion.duration / MOST_SAMPLES))
     save_figure(DRAWINGS[kind](samples, motion), path)
 
@@ -38,7 +46,8 @@ def save_plot(motion: Motion, path: str | os.PathLike[str], what: str) -> None:
 def save_figure(figure: Figure, path: str | os.PathLike[str]) -> None:
     """Write a figure into a file whose ending names the format."""
     FigureCanvasAgg(figure)
-    figure.savefig(os.fspath(path), dpi=PIXELS_PER_INCH)
+    with writing(path):
+        figure.savefig(os.fspath(path), dpi=PIXELS_PER_INCH)
 
 
 def draw_joints(samples: Samples, motion: Motion) -> Figure:

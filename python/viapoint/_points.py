@@ -2,20 +2,29 @@
 
 from __future__ import annotations
 
+import fcntl
 import json
 import os
+import warnings
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Literal
 
 import numpy as np
 
 from . import _core
-from ._arguments import ArrayLike, Vector, choice, vector
+from ._arguments import ArrayLike, Vector, choice, vector, writing
 from ._program import Program
-from ._robot import Robot, load_robot
+from ._robot import Robot, load_robot, require_robot, require_within_limits
 from ._zone import ZoneLike
-from .errors import BadArgumentError, BadProgramError, EmptyProgramError, FileError
+from .errors import (
+    BadArgumentError,
+    BadProgramError,
+    EmptyProgramError,
+    FileError,
+    OtherRobotWarning,
+)
 
 FORMAT = "viapoint points"
 VERSION = 1
@@ -25,7 +34,9 @@ class PointList:
     """Taught points in the order they were taught, kept in a JSON file.
 
     Every `record` is on disk when it returns: the file is written aside and renamed, so that a
-    crash leaves the old list or the new one. A file that is damaged raises and is left alone.
+    crash leaves the old list or the new one, and processes that teach into one file wait for each
+    other (at the empty file ``.<name>.lock`` beside it). A file that is damaged raises and is left
+    alone.
 
     Parameters
     ----------
@@ -51,11 +62,12 @@ class PointList:
                 ways_out=["To begin a new one, give its robot: PointList(path, robot)."],
             )
         self._points: dict[str, Vector] = {}
+        self._fingerprint = ""
         if self.path.exists():
-            name, self._points = _read(self.path, robot)
+            name, self._fingerprint, self._points = _read(self.path, robot)
             self.robot = load_robot(name) if robot is None else robot
         elif robot is not None:
-            self.robot = robot
+            self.robot = require_robot(robot)
 
     def __repr__(self) -> str:
         """File and number of points."""
@@ -88,22 +100,26 @@ class PointList:
         name : str
             What to call it; a known name keeps its place in the order.
         q : array_like, (n,)
-            Joints [rad or m]. Limits are looked at when the list is played back.
+            Joints [rad or m].
 
         Raises
         ------
         BadArgumentError
             An empty name, or joints that do not fit.
+        JointLimitError, CouplingLimitError
+            Joints outside the robot's limits.
         FileError, BadProgramError
             The file cannot be written, or what stands there is damaged (and is left alone).
         """
         if not isinstance(name, str) or not name.strip():
             raise BadArgumentError(f"name is {name!r}; a point needs a name.")
         joints = vector(q, "q", self.robot.joints)
-        # Another process may have taught meanwhile: what is on disk counts.
-        points = _read(self.path, self.robot)[1] if self.path.exists() else dict(self._points)
-        points[name] = joints
-        self._write(points)
+        require_within_limits(self.robot, joints, f'point "{name}"', [])
+        with self._locked():
+            # Another process may have taught meanwhile: what is on disk counts.
+            points = self._on_disk() if self.path.exists() else dict(self._points)
+            points[name] = joints
+            self._write(points)
 
     def remove(self, name: str) -> None:
         """Delete a point, on disk at once.
@@ -116,9 +132,10 @@ class PointList:
             As for `record`.
         """
         self[name]
-        points = _read(self.path, self.robot)[1]
-        points.pop(name, None)
-        self._write(points)
+        with self._locked():
+            points = self._on_disk()
+            points.pop(name, None)
+            self._write(points)
 
     def program(
         self,
@@ -153,8 +170,15 @@ class PointList:
         ------
         EmptyProgramError
             Fewer than two points to move between.
+        JointLimitError, CouplingLimitError
+            A point outside the robot's limits, by its name.
         BadArgumentError
             By the argument's name.
+
+        Warns
+        -----
+        OtherRobotWarning
+            The points were taught with other limits, another tool or another chain.
         """
         way = choice(kind, "kind", ("ptp", "lin"))
         points = list(self._points.values())
@@ -165,6 +189,17 @@ class PointList:
                 file=str(self.path),
                 ways_out=["Teach more points: arm.teach(name, points)."],
             )
+        if self._fingerprint not in ("", self.robot.fingerprint):
+            warnings.warn(
+                f'{self.path} was taught with another "{self.robot.name}" (fingerprint '
+                f"{self._fingerprint}, now {self.robot.fingerprint}): limits, tool or chain "
+                "differ.",
+                OtherRobotWarning,
+                stacklevel=2,
+            )
+        for point, q in self._points.items():
+            way_out = [f'Teach "{point}" anew, or remove it: points.remove("{point}").']
+            require_within_limits(self.robot, q, f'point "{point}"', way_out)
         program = Program(
             self.robot,
             start=points[0] if start is None else start,
@@ -183,25 +218,46 @@ class PointList:
                 program.movel(q)
         return program
 
+    @contextmanager
+    def _locked(self) -> Iterator[None]:
+        """Keep every other thread and process from changing the file meanwhile."""
+        lock = self.path.with_name(f".{self.path.name}.lock")
+        with writing(self.path):
+            held = os.open(lock, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o666)
+        try:
+            fcntl.flock(held, fcntl.LOCK_EX)
+            yield
+        finally:
+            os.close(held)
+
+    def _on_disk(self) -> dict[str, Vector]:
+        _, self._fingerprint, points = _read(self.path, self.robot)
+        return points
+
     def _write(self, points: dict[str, Vector]) -> None:
+        fingerprint = self._fingerprint or self.robot.fingerprint
         document = {
             "format": FORMAT,
             "version": VERSION,
             "robot": self.robot.name,
+            "robot_fingerprint": fingerprint,
             "points": [{"name": name, "q": q.tolist()} for name, q in points.items()],
         }
         text = json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
         _core.write_file_atomically(str(self.path), text)
-        self._points = points
+        self._points, self._fingerprint = points, fingerprint
 
 
-def _read(path: Path, robot: Robot | None) -> tuple[str, dict[str, Vector]]:
-    """Read and check a point file: the robot's name, and the points."""
-    text = _core.read_file(str(path))
+def _read(path: Path, robot: Robot | None) -> tuple[str, str, dict[str, Vector]]:
+    """Read and check a point file: the robot's name and fingerprint, and the points."""
     try:
-        document = json.loads(text)
+        document = json.loads(_core.read_file(str(path)))
     except json.JSONDecodeError as error:
         raise _damaged(path, f"it is no JSON: {error.msg}", error.lineno) from None
+    except UnicodeDecodeError:
+        raise _damaged(path, "it is no UTF-8 text") from None
+    except RecursionError:
+        raise _damaged(path, "it is nested too deeply") from None
     if not isinstance(document, dict) or document.get("format") != FORMAT:
         raise _damaged(path, f'the key "format" must be "{FORMAT}"')
     if document.get("version") != VERSION:
@@ -211,6 +267,9 @@ def _read(path: Path, robot: Robot | None) -> tuple[str, dict[str, Vector]]:
         raise _damaged(path, 'the key "robot" must be a name')
     if robot is not None and robot.name != name:
         raise _damaged(path, f'it holds points of the robot "{name}", not of "{robot.name}"')
+    fingerprint = document.get("robot_fingerprint", "")
+    if not isinstance(fingerprint, str):
+        raise _damaged(path, 'the key "robot_fingerprint" must be text')
     entries = document.get("points")
     if not isinstance(entries, list):
         raise _damaged(path, 'the key "points" must be a list')
@@ -222,12 +281,12 @@ def _read(path: Path, robot: Robot | None) -> tuple[str, dict[str, Vector]]:
         if entry["name"] in points:
             raise _damaged(path, f'points[{i}] has the name "{entry["name"]}" a second time')
         try:
-            size = len(entry["q"]) if joints is None else joints
-            points[entry["name"]] = vector(entry["q"], f"points[{i}].q", size)
+            joints = len(entry["q"]) if joints is None else joints
+            points[entry["name"]] = vector(entry["q"], f"points[{i}].q", joints)
         except (BadArgumentError, KeyError, TypeError) as error:
             reason = error.message if isinstance(error, BadArgumentError) else '"q" is missing'
             raise _damaged(path, f"points[{i}]: {reason}") from None
-    return name, points
+    return name, fingerprint, points
 
 
 def _damaged(path: Path, reason: str, line: int | None = None) -> BadProgramError:

@@ -21,7 +21,7 @@ from ._arguments import (
 )
 from ._motion import Motion
 from ._report import Report
-from ._robot import Robot, load_robot
+from ._robot import Robot, load_robot, require_robot
 from ._source import caller
 from ._zone import ZoneLike, zone_of
 from .errors import BadArgumentError, BadProgramError, MotionError
@@ -72,11 +72,7 @@ class Program:
         position_tolerance: float = _core.POSITION_TOLERANCE,
         angle_tolerance: float = _core.ANGLE_TOLERANCE,
     ) -> None:
-        if not isinstance(robot, Robot):
-            raise BadArgumentError(
-                f"robot is {robot!r}; it must be a Robot.", ways_out=["Use load_robot(name)."]
-            )
-        self.robot = robot
+        self.robot = require_robot(robot)
         self.name = name
         self._defaults = (speed, acceleration, scale, zone_of(zone))
         self._options()  # refuses a bad default here, where it was given
@@ -231,6 +227,10 @@ class Program:
             By the argument's name.
         """
         file, line = caller()
+        if not isinstance(points, Sequence) or isinstance(points, str):
+            raise BadArgumentError(
+                f"points is {points!r}; it must be a list of (pose or joints, seconds)."
+            )
         timed = []
         for i, point in enumerate(points):
             try:
@@ -262,7 +262,9 @@ class Program:
         Report
             Every problem at once, each with the script's line, and what would make it right.
         """
-        return Report(_core.check(self.robot._core, self._core))
+        report = Report(_core.check(self.robot._core, self._core))
+        _session.current().checked(self, report)
+        return report
 
     def plan(self) -> Motion:
         """Plan and prove the motion.
@@ -370,6 +372,23 @@ class Program:
                 "or (4, 4): a pose."
             )
         return _core.Target.joints(array)
+
+
+def motion_of(program: Program | Motion) -> Motion:
+    """Return the motion itself, or that of a program.
+
+    Raises
+    ------
+    BadArgumentError
+        Neither of the two.
+    MotionError
+        What `Program.plan` raises.
+    """
+    if isinstance(program, Motion):
+        return program
+    if isinstance(program, Program):
+        return program.plan()
+    raise BadArgumentError(f"program is {program!r}; it must be a Program or a Motion.")
 
 
 def _positive(

@@ -10,7 +10,15 @@ import numpy as np
 
 from . import _core
 from ._arguments import NOTEWORTHY_CORRECTION, ArrayLike, Vector, numbers_of, pose, vector
-from .errors import BadArgumentError, PoseCorrectedWarning
+from .errors import (
+    BadArgumentError,
+    CouplingLimitError,
+    JointLimitError,
+    PoseCorrectedWarning,
+)
+
+_SLACK = 1e-9
+"""Joints this far outside a limit [rad or m] are at it, but for rounding."""
 
 
 class Robot:
@@ -196,6 +204,24 @@ class Robot:
         """How near the arm at q (n,) is to losing a direction: name, distance, manipulability."""
         return self._core.singularity(vector(q, "q", self.joints))
 
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the robot as a .yaml file that `load_robot` reads back: the same fingerprint.
+
+        So an arm with limits or a tool of its own leaves Python: ``viapoint --robot`` and
+        ``viapoint-controller --robot`` take the file. It is written aside and renamed.
+
+        Raises
+        ------
+        BadArgumentError
+            A file that does not end in .yaml.
+        FileError
+            With the path and the system's reason.
+        """
+        name = os.fspath(path)
+        if not name.endswith(".yaml"):
+            raise BadArgumentError(f'path is "{name}"; a robot\'s file ends in .yaml.')
+        _core.write_file_atomically(name, self._core.to_yaml())
+
     def with_limits(
         self,
         *,
@@ -251,7 +277,51 @@ def load_robot(name_or_path: str | os.PathLike[str]) -> Robot:
     FileError
         No such file.
     """
+    if not isinstance(name_or_path, (str, os.PathLike)):
+        raise BadArgumentError(
+            f'name_or_path is {name_or_path!r}; it must be a name such as "puma560", or a file.'
+        )
     return Robot(_core.load_robot(os.fspath(name_or_path)))
+
+
+def require_robot(robot: object) -> Robot:
+    """Return `robot`, which must be a Robot.
+
+    Raises
+    ------
+    BadArgumentError
+        It is something else, such as a name.
+    """
+    if not isinstance(robot, Robot):
+        raise BadArgumentError(
+            f"robot is {robot!r}; it must be a Robot.", ways_out=["Use load_robot(name)."]
+        )
+    return robot
+
+
+def require_within_limits(robot: Robot, q: Vector, name: str, ways_out: list[str]) -> None:
+    """Refuse joints `q` (n,) [rad or m] outside the position or coupled limits.
+
+    Raises
+    ------
+    JointLimitError, CouplingLimitError
+        By `name`, with the joint, its value and its limit.
+    """
+    limits = robot.limits
+    if limits.contains(q, slack=_SLACK):
+        return
+    for joint, value in enumerate(q):
+        low, high = limits.position_min[joint], limits.position_max[joint]
+        if not low - _SLACK <= value <= high + _SLACK:
+            raise JointLimitError(
+                f"{name}: joint {joint + 1} is at {value:.6g}; it may be from {low:.6g} to "
+                f"{high:.6g} [rad or m].",
+                joint=joint,
+                value=float(value),
+                limit=float(low if value < low else high),
+                ways_out=ways_out,
+            )
+    raise CouplingLimitError(f"{name} breaks a coupled limit of the robot.", ways_out=ways_out)
 
 
 def joint_robot(
@@ -275,7 +345,7 @@ def joint_robot(
     velocity, acceleration, jerk : array_like
         One number for all joints, or (n,) [rad or m per s, s², s³].
     position_min, position_max : array_like, optional
-        As above [rad or m]; none when left out.
+        As above [rad or m], infinite allowed; none when left out.
     coupling, lower, upper : array_like, optional
         Coupled limits lower <= coupling @ q <= upper; (m, n), (m,), (m,).
 
@@ -295,8 +365,8 @@ def joint_robot(
     return Robot(
         _core.joint_robot(
             _core.JointLimits(
-                position_min=_each(position_min, "position_min", n, np.full(n, -np.inf)),
-                position_max=_each(position_max, "position_max", n, np.full(n, np.inf)),
+                position_min=_bound(position_min, "position_min", n, -np.inf),
+                position_max=_bound(position_max, "position_max", n, np.inf),
                 velocity=_each(velocity, "velocity", n),
                 acceleration=_each(acceleration, "acceleration", n),
                 jerk=_each(jerk, "jerk", n),
@@ -313,6 +383,16 @@ def _each(value: ArrayLike | None, name: str, n: int, default: Vector | None = N
         return cast("Vector", default)
     array = numbers_of(value, name)
     return np.full(n, float(array)) if array.ndim == 0 else vector(array, name, n)
+
+
+def _bound(value: ArrayLike | None, name: str, n: int, none: float) -> Vector:
+    """Return position limits of a side, where `none` (an infinity) means that there is none."""
+    if value is None:
+        return np.full(n, none)
+    array = np.asarray(value)
+    unlimited = array == none
+    finite = _each(np.where(unlimited, 0.0, array), name, n)
+    return np.where(unlimited, none, finite)
 
 
 def _checked(value: ArrayLike | None) -> Vector:

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arguments import Vector
+from ._arguments import Vector, writing
 from ._robot import Robot
 from ._samples import Samples
 
@@ -95,9 +95,16 @@ class RunLog:
         return cls(**core.columns(), robot=robot, period=period, core=core)
 
     def save_npz(self, path: str | os.PathLike[str]) -> None:
-        """Write the arrays by their names into a numpy file."""
+        """Write the arrays by their names into a numpy file.
+
+        Raises
+        ------
+        FileError
+            With the path and the system's reason.
+        """
         columns = {f.name: getattr(self, f.name) for f in fields(self) if f.repr}
-        np.savez_compressed(os.fspath(path), **columns)
+        with writing(path):
+            np.savez_compressed(os.fspath(path), **columns)
 
     def save_csv(self, path: str | os.PathLike[str]) -> None:
         """Write one line a cycle, as ``viapoint-controller --log`` does.

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from ._job import Job
     from ._motion import Motion
     from ._program import Program
+    from ._report import Report
     from .errors import MotionError
 
 
@@ -31,6 +32,9 @@ class Session:
 
     def planned(self, motion: Motion) -> None:
         """Hear that a program was planned."""
+
+    def checked(self, program: Program, report: Report) -> None:
+        """Hear that a program was checked."""
 
     def refused(self, program: Program, error: MotionError) -> None:
         """Hear that a program could not be planned."""

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from . import _core
 from ._arguments import choice, number
 from ._motion import CYCLE, Motion
-from ._program import Program
+from ._program import Program, motion_of
 from ._run_log import RunLog
 from ._samples import Samples
 from .errors import BadArgumentError
@@ -45,7 +45,7 @@ def simulate(
     MotionError
         What `Program.plan` raises, and what a drive would refuse.
     """
-    motion = program if isinstance(program, Motion) else program.plan()
+    motion = motion_of(program)
     period = number(cycle, "cycle", "s", least=1e-4, most=1.0)
     timed = [_command(command, f"commands[{i}]") for i, command in enumerate(commands)]
     return RunLog.of(_core.simulate(motion._core, timed, period), motion.robot, period).samples

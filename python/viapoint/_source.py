@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-_PACKAGE = str(Path(__file__).parent)
+_PACKAGE = Path(__file__).parent
 
 
 def caller() -> tuple[str, int]:
@@ -17,4 +17,4 @@ def caller() -> tuple[str, int]:
 
 
 def _is_ours(file: str) -> bool:
-    return str(Path(file).parent).startswith(_PACKAGE)
+    return Path(file).is_relative_to(_PACKAGE)

@@ -3,50 +3,111 @@
 from __future__ import annotations
 
 import math
+import time
 
 import numpy as np
 
 from . import _core
 from ._arguments import Vector
-from ._job import RunReport
+from ._job import ENDED, RunReport
+from .errors import BusyError, DriveFaultError
+
+_STATES = _core.run_states()
+_LOOKS = 20
+"""A motion is over after so many looks at it, so that a script which polls gets on."""
 
 
 class VirtualExecution:
-    """A run that has ended before anybody can look: `_core.simulate`'s records."""
+    """One run in virtual time.
 
-    def __init__(self, log: _core.Log, duration: float, cycle: float) -> None:
-        self._log = log
-        self.duration = duration
+    Time does not pass by itself: every look at the run lets a twentieth of the motion pass, and a
+    wait lets pass what it would have waited. Commands take effect in the next cycle.
+    """
+
+    def __init__(self, motion: _core.PlannedMotion, override: float, cycle: float) -> None:
+        self._motion = motion
         self._cycle = cycle
-        columns = log.columns()
-        self.state: str = _core.run_states()[int(columns["state"][-1])]
-        self.nominal_time = float(columns["nominal_time"][-1])
-        self.move = int(columns["move"][-1])
-        self.last = np.array(columns["q"][-1])
+        self._step = math.ceil(motion.duration / cycle / _LOOKS)
+        self._commands: list[tuple[float, str, float]] = [(0.0, "override", override)]
+        self._now = 0
+        self.duration = motion.duration
         self.overruns = 0
+        self._simulate()
+
+    def _simulate(self) -> None:
+        """Look ahead to where the run ends, or rests, if no other command comes."""
+        self._log = _core.simulate(self._motion, self._commands, self._cycle)
+        self._columns = self._log.columns()
+
+    def command(self, kind: str, share: float = 0.0) -> None:
+        """Have a command take effect in the next cycle."""
+        if self._state() not in ENDED:
+            self._commands.append(((self._now + 1) * self._cycle, kind, share))
+            self._simulate()
+
+    def pass_cycles(self, count: int) -> None:
+        """Let time pass, at most until the run ends or rests."""
+        self._now = min(self._now + count, len(self._log) - 1)
+
+    def to_end(self) -> bool:
+        """Let time pass until the run ends (True) or rests."""
+        self.pass_cycles(len(self._log))
+        return self._state() in ENDED
+
+    def joints(self) -> Vector:
+        """Joints now, (n,)."""
+        return np.array(self._columns["q"][self._now])
+
+    def _state(self) -> str:
+        return _STATES[int(self._columns["state"][self._now])]
+
+    @property
+    def state(self) -> str:
+        """State after a while has passed."""
+        self.pass_cycles(self._step)
+        return self._state()
+
+    @property
+    def nominal_time(self) -> float:
+        """How far along the motion after a while has passed [s]."""
+        self.pass_cycles(self._step)
+        return float(self._columns["nominal_time"][self._now])
+
+    @property
+    def move(self) -> int:
+        """The step under way after a while has passed."""
+        self.pass_cycles(self._step)
+        return int(self._columns["move"][self._now])
 
     def wait(self, timeout: float) -> bool:
-        """Return at once: it has ended."""
-        return True
+        """Let `timeout` [s] pass; in earnest for a run that rests, as a thread may act."""
+        self.pass_cycles(max(1, round(timeout / self._cycle)))
+        if self._state() in ENDED:
+            return True
+        if self._now + 1 == len(self._log):
+            time.sleep(timeout)
+        return False
 
     def pause(self) -> None:
-        """Do nothing: it has ended."""
+        """Come to rest on the path."""
+        self.command("pause")
 
     def resume(self) -> None:
-        """Do nothing: it has ended."""
+        """Go on."""
+        self.command("resume")
 
     def stop(self) -> None:
-        """Do nothing: it has ended."""
+        """Come to rest on the path and end."""
+        self.command("stop")
 
     def log(self) -> _core.Log:
-        """Return every cycle."""
-        return self._log
+        """Return every cycle so far."""
+        return self._log.head(self._now + 1)
 
     def report(self) -> RunReport:
         """Count the cycles; virtual time has no latencies."""
-        cycles = len(self._log)
         return RunReport(
-            cycles=cycles,
+            cycles=self._now + 1,
             overruns=0,
             latency_p50=math.nan,
             latency_p99=math.nan,
@@ -54,7 +115,9 @@ class VirtualExecution:
             compute_p50=math.nan,
             compute_p99=math.nan,
             compute_max=math.nan,
-            wall_time=(cycles - 1) * self._cycle,
+            wall_time=self._now * self._cycle,
+            missed_cycles=0,
+            lost_records=0,
         )
 
 
@@ -63,27 +126,84 @@ class VirtualLoop:
 
     def __init__(self, start: Vector, cycle: float) -> None:
         self._cycle = cycle
-        self.position = np.array(start)
-        self.override = 1.0
-        self.busy = False
-        self.shortcomings: list[str] = []
+        self._rest = np.array(start)
+        self._override = 1.0
+        self._run: VirtualExecution | None = None
+        self._shortcomings: list[str] = []
         self.is_open = True
+
+    def _require_open(self) -> None:
+        if not self.is_open:
+            raise DriveFaultError(
+                "The arm is no longer connected.",
+                ways_out=["Connect again: viapoint.connect(...)."],
+            )
+
+    @property
+    def override(self) -> float:
+        """Share of the planned speed."""
+        self._require_open()
+        return self._override
+
+    @override.setter
+    def override(self, share: float) -> None:
+        self._require_open()
+        self._override = share
+        if self._run is not None:
+            self._run.command("override", share)
+
+    @property
+    def position(self) -> Vector:
+        """Joints after a while has passed, (n,)."""
+        self._require_open()
+        if self._run is None:
+            return self._rest.copy()
+        self._run.state  # noqa: B018 -- the look lets time pass
+        return self._run.joints()
 
     @property
     def measured(self) -> Vector:
-        """Joints where the last motion ended."""
+        """The same: nothing lags in virtual time."""
         return self.position
 
+    @property
+    def busy(self) -> bool:
+        """True while a run is under way."""
+        self._require_open()
+        return self._run is not None and self._run.state not in ENDED
+
+    @property
+    def shortcomings(self) -> list[str]:
+        """Nothing: virtual time needs no rights."""
+        self._require_open()
+        return self._shortcomings
+
     def run(self, motion: _core.PlannedMotion) -> VirtualExecution:
-        """Simulate the motion to its end."""
-        _core.admit(motion, self.position)
-        # At an override of 0 the real arm would wait for ever; time here is not real, so go on.
-        commands = [(0.0, "override", self.override)] if 0.0 < self.override < 1.0 else []
-        log = _core.simulate(motion, commands, self._cycle)
-        execution = VirtualExecution(log, motion.duration, self._cycle)
-        self.position = execution.last
-        return execution
+        """Begin the motion; one before it, which the script may have slept through, goes on first.
+
+        Raises
+        ------
+        BusyError
+            The one before it rests without having ended.
+        DriveFaultError
+            The arm is closed.
+        MotionError
+            What the drive would refuse.
+        """
+        self._require_open()
+        if self._run is not None:
+            if not self._run.to_end():
+                raise BusyError(
+                    "A run is already under way.", ways_out=["Resume or stop it, and wait for it."]
+                )
+            self._rest, self._run = self._run.joints(), None
+        _core.admit(motion, self._rest)
+        self._run = VirtualExecution(motion, self._override, self._cycle)
+        return self._run
 
     def close(self) -> None:
-        """Disconnect."""
+        """Disconnect; a run under way is brought to rest on its path first."""
+        if self._run is not None:
+            self._run.stop()
+            self._run.to_end()
         self.is_open = False

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import os
 import runpy
+import signal
 import sys
+import traceback
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from types import FrameType, TracebackType
 from typing import Annotated
 
 import typer
 from rich.console import Console
+from rich.markup import escape
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
@@ -20,8 +25,8 @@ from ._motion import Motion
 from ._outcome import file_stem, motion_tables, run_tables, write_pictures, write_run
 from ._program import Program
 from ._report import Report
-from ._robot import load_robot
-from .errors import FileError, MotionError
+from ._robot import Robot, load_robot
+from .errors import BadArgumentError, FileError, MotionError
 
 app = typer.Typer(
     help="Programs in, proven 2 ms setpoints out.",
@@ -36,6 +41,10 @@ Script = Annotated[
     Path, typer.Argument(metavar="SCRIPT", help="A Python script, or a program file")
 ]
 Folder = Annotated[Path, typer.Option("--out", "-o", help="Where logs and pictures go")]
+RobotFile = Annotated[
+    str | None,
+    typer.Option("--robot", help="The robot of a program file: a name, or a .yaml or .urdf file"),
+]
 
 
 class Recorder(_session.Session):
@@ -49,21 +58,31 @@ class Recorder(_session.Session):
         Everything run, in order.
     refusals : list of (Program, MotionError)
         Everything that could not be planned.
+    checks : list of (Program, Report)
+        Everything the script checked itself.
     """
 
     def __init__(self, virtual: bool) -> None:
         self.virtual = virtual
+        self.ended_by: MotionError | None = None
         self.motions: list[Motion] = []
         self.runs: list[Job] = []
         self.refusals: list[tuple[Program, MotionError]] = []
+        self.checks: list[tuple[Program, Report]] = []
 
     def planned(self, motion: Motion) -> None:
         """Keep the motion."""
         self.motions.append(motion)
+        self.checks.append((motion.program, motion.report))
 
     def refused(self, program: Program, error: MotionError) -> None:
         """Keep what was refused, and why."""
         self.refusals.append((program, error))
+        self.checks.append((program, Report([error.problem])))
+
+    def checked(self, program: Program, report: Report) -> None:
+        """Keep the report."""
+        self.checks.append((program, report))
 
     def started(self, motion: Motion, job: Job) -> None:
         """Keep the run."""
@@ -76,6 +95,19 @@ class Recorder(_session.Session):
             return [job.motion for job in self.runs]
         latest = {id(motion.program): motion for motion in self.motions}
         return list(latest.values())
+
+    @property
+    def programs(self) -> list[Program]:
+        """Every program that was checked, planned or refused, once each."""
+        return list({id(program): program for program, _ in self.checks}.values())
+
+    def report_of(self, program: Program) -> Report:
+        """Return what the script last heard of a program; where it was refused, all of it."""
+        reports = [report for checked, report in self.checks if checked is program]
+        if any(refused is program for refused, _ in self.refusals):
+            whole = program.check()
+            return reports[-1] if whole.ok else whole
+        return reports[-1]
 
 
 class ProgressRecorder(Recorder):
@@ -98,7 +130,9 @@ class ProgressRecorder(Recorder):
             )
             self._bar.start()
         if id(job) not in self._tasks:
-            self._tasks[id(job)] = self._bar.add_task(job.motion.program.name, total=job.duration)
+            self._tasks[id(job)] = self._bar.add_task(
+                escape(job.motion.program.name), total=job.duration
+            )
         self._bar.update(self._tasks[id(job)], completed=job.nominal_time)  # type: ignore[arg-type]
 
     def ended(self, job: Job) -> None:
@@ -113,12 +147,13 @@ class ProgressRecorder(Recorder):
 
 
 @app.command()
-def run(script: Script, out: Folder = Path("out")) -> None:
+def run(script: Script, out: Folder = Path("out"), robot: RobotFile = None) -> None:
     """Run a script; then show its figures and write its logs and pictures."""
     recorder = ProgressRecorder()
     try:
-        with _reported(recorder):
-            _execute(script, recorder)
+        with _reported(recorder), _sigterm_as_ctrl_c():
+            _require_writable(out)
+            _execute(script, recorder, robot)
     finally:
         recorder.close()
         taken: set[str] = set()
@@ -130,26 +165,35 @@ def run(script: Script, out: Folder = Path("out")) -> None:
 
 
 @app.command()
-def check(script: Script) -> None:
-    """Check what a script would run, without any motion and without waiting."""
+def check(script: Script, robot: RobotFile = None) -> None:
+    """Check every program of a script, without any motion and without waiting.
+
+    Every program that the script checks, plans or runs is shown; the exit code is 1 when any of
+    them has an error.
+    """
     recorder = Recorder(virtual=True)
+    wrong = False
     try:
         with _reported(recorder):
-            _execute(script, recorder)
+            _execute(script, recorder, robot)
     finally:
-        for motion in recorder.chosen:
-            console.print(f"[bold]{motion.program.name}[/bold], {motion.duration:.3f} s: ", end="")
-            console.print(motion.report)
-    if not recorder.chosen:
+        told = [program for program, error in recorder.refusals if error is recorder.ended_by]
+        for program in recorder.programs:
+            if not any(program is other for other in told):
+                wrong |= _say_report(recorder, program)
+    if not recorder.programs:
         console.print("The script planned nothing.")
+    if wrong:
+        raise typer.Exit(1)
 
 
 @app.command()
-def plot(script: Script, out: Folder = Path("out")) -> None:
+def plot(script: Script, out: Folder = Path("out"), robot: RobotFile = None) -> None:
     """Draw what a script would run, without any motion."""
     recorder = Recorder(virtual=True)
     with _reported(recorder):
-        _execute(script, recorder)
+        _require_writable(out)
+        _execute(script, recorder, robot)
         taken: set[str] = set()
         for motion in recorder.chosen:
             console.print(*motion_tables(motion))
@@ -157,11 +201,12 @@ def plot(script: Script, out: Folder = Path("out")) -> None:
 
 
 @app.command()
-def export(script: Script, out: Folder = Path("out")) -> None:
+def export(script: Script, out: Folder = Path("out"), robot: RobotFile = None) -> None:
     """Write the programs of a script as files for viapoint-controller."""
     recorder = Recorder(virtual=True)
     with _reported(recorder):
-        _execute(script, recorder)
+        _require_writable(out)
+        _execute(script, recorder, robot)
         out.mkdir(parents=True, exist_ok=True)
         taken: set[str] = set()
         for motion in recorder.chosen:
@@ -178,7 +223,7 @@ def robots() -> None:
         table.add_column(heading, overflow="fold")
     for name in _core.builtin_robots():
         robot = load_robot(name)
-        table.add_row(robot.name, str(robot.joints), robot.ik_family, robot.title)
+        table.add_row(robot.name, str(robot.joints), escape(robot.ik_family), escape(robot.title))
     console.print(table)
 
 
@@ -205,28 +250,74 @@ def main() -> None:
     app()
 
 
-def _execute(script: Path, session: _session.Session) -> None:
+def _execute(script: Path, session: _session.Session, robot: str | None = None) -> None:
     """Run a script as Python would, or a program file on a simulated arm."""
     if not script.is_file():
         raise FileError(f"There is no script {script}.", file=str(script))
     with _session.use(session):
         if script.suffix == ".json":
-            _execute_program(script)
+            _execute_program(script, None if robot is None else load_robot(robot))
             return
+        if robot is not None:
+            raise BadArgumentError(
+                f"--robot {robot} is for program files (.json); {script} chooses its own robot."
+            )
         arguments, path = sys.argv, sys.path
         sys.argv, sys.path = [str(script)], [str(script.resolve().parent), *path]
         try:
             runpy.run_path(str(script), run_name="__main__")
+        except MotionError:
+            raise
+        except Exception as error:
+            trace = _from_script_on(error.__traceback__, str(script))
+            text = "".join(traceback.format_exception(type(error), error, trace))
+            errors.print(text, end="", markup=False, highlight=False, soft_wrap=True)
+            raise typer.Exit(1) from error
         finally:
             sys.argv, sys.path = arguments, path
 
 
-def _execute_program(path: Path) -> None:
+def _execute_program(path: Path, robot: Robot | None) -> None:
     from ._arm import connect
 
-    program = Program.load(path)
-    with connect(f"sim://{program.robot.name}", start=program.start) as arm:
+    program = Program.load(path, robot)
+    arm_robot = program.robot
+    with connect(f"sim://{arm_robot.name}", start=program.start, robot=arm_robot) as arm:
         arm.run(program)
+
+
+def _from_script_on(trace: TracebackType | None, script: str) -> TracebackType | None:
+    """Leave out the frames that run the script; none is left of one that is no Python."""
+    while trace is not None and trace.tb_frame.f_code.co_filename != script:
+        trace = trace.tb_next
+    return trace
+
+
+def _require_writable(folder: Path) -> None:
+    """Refuse, before anything moves, a folder that could not be made or written into."""
+    there = folder
+    while not there.exists() and there != there.parent:
+        there = there.parent
+    if not there.is_dir() or not os.access(there, os.W_OK | os.X_OK):
+        raise FileError(
+            f"{folder} cannot be written: {there} is no folder that you may write into.",
+            file=str(folder),
+            ways_out=["Give another folder: --out FOLDER."],
+        )
+
+
+@contextmanager
+def _sigterm_as_ctrl_c() -> Iterator[None]:
+    """Have SIGTERM, too, bring the arm to rest on its path and keep the log."""
+
+    def interrupt(number: int, frame: FrameType | None) -> None:
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGTERM, interrupt)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
 
 
 @contextmanager
@@ -235,19 +326,30 @@ def _reported(recorder: Recorder) -> Iterator[None]:
     try:
         yield
     except MotionError as error:
+        recorder.ended_by = error
         for program, reason in recorder.refusals:
             if reason is error:
-                errors.print(f"[bold]{program.name}[/bold]: ", end="")
-                errors.print(program.check())
+                errors.print(f"[bold]{escape(program.name)}[/bold]: ", end="")
+                errors.print(recorder.report_of(program), soft_wrap=not errors.is_terminal)
                 break
         else:
-            errors.print(Report([error.problem]))
+            errors.print(Report([error.problem]), soft_wrap=not errors.is_terminal)
         raise typer.Exit(1) from error
+
+
+def _say_report(recorder: Recorder, program: Program) -> bool:
+    """Print the report of a program; True when it holds an error."""
+    report = recorder.report_of(program)
+    durations = [m.duration for m in recorder.motions if m.program is program]
+    seconds = f", {durations[-1]:.3f} s" if durations else ""
+    console.print(f"[bold]{escape(program.name)}[/bold]{seconds}: ", end="")
+    console.print(report, soft_wrap=not console.is_terminal)
+    return not report.ok
 
 
 def _say_files(files: list[Path]) -> None:
     for file in files:
-        console.print(f"  wrote {file}", highlight=False)
+        console.print(f"  wrote {escape(str(file))}", highlight=False, soft_wrap=True)
 
 
 if __name__ == "__main__":

@@ -42,6 +42,7 @@ __all__ = [
     "NotARotationError",
     "NotAtRestError",
     "NotAtStartError",
+    "OtherRobotWarning",
     "OutsideLimitsError",
     "PoseCorrectedError",
     "PoseCorrectedWarning",
@@ -339,6 +340,10 @@ class BusyError(RunError):
 
 class PoseCorrectedWarning(UserWarning):
     """A pose within rounding of a rotation was projected before its inverse was asked for."""
+
+
+class OtherRobotWarning(UserWarning):
+    """Points that were taught with another fingerprint of the robot are played back."""
 
 
 def _leaves(root: type[MotionError]) -> list[type[MotionError]]:

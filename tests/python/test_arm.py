@@ -110,11 +110,29 @@ def test_the_start_may_stand_in_the_url():
         ("sim://puma560?start=0,1", {}, "start"),
         ("sim://puma560", {"start": [1, 2]}, "start"),
         ("sim://puma560", {"cycle": 0.0}, "cycle"),
+        ("sim://puma560", {"cycle": "fast"}, "cycle"),
+        (3, {}, "url is 3"),
+        ("sim://puma560", {"robot": "puma560"}, "robot is 'puma560'"),
     ],
 )
 def test_a_bad_connection_is_refused(url, arguments, says):
     with pytest.raises(errors.BadArgumentError, match=says):
         vp.connect(url, **arguments)
+
+
+def test_a_start_outside_the_limits_is_refused():
+    with pytest.raises(errors.JointLimitError, match="start: joint 2 is at 9") as caught:
+        vp.connect("sim://puma560", start=[0, 9, 0, 0, 0, 0])
+    assert caught.value.joint == 1
+    assert caught.value.ways_out
+
+
+def test_a_start_that_breaks_a_coupled_limit_is_refused():
+    robot = vp.joint_robot(
+        2, velocity=1, acceleration=1, jerk=1, coupling=[[1, 1]], lower=[-1], upper=[1]
+    )
+    with pytest.raises(errors.CouplingLimitError, match="start"):
+        vp.connect("sim://two", robot=robot, start=[0.8, 0.8])
 
 
 def test_a_connection_to_an_unknown_robot_is_refused():
@@ -162,6 +180,15 @@ def test_wait_returns_false_at_its_timeout(long):
         assert job.state == "running"
         assert 0.0 < job.nominal_time < job.duration
         assert job.wait() is True
+
+
+@pytest.mark.parametrize("timeout", [-1, np.nan, np.inf, "long"])
+def test_a_bad_timeout_is_refused_and_the_run_goes_on(short, timeout):
+    with vp.connect("sim://puma560", start=short.start) as arm:
+        job = arm.run(short, wait=False)
+        with pytest.raises(errors.BadArgumentError, match="timeout"):
+            job.wait(timeout)
+    assert job.state == "finished"
 
 
 def test_stop_comes_to_rest_on_the_path(long):
@@ -223,6 +250,20 @@ def test_leaving_the_block_while_paused_stops(long):
         job = arm.run(long, wait=False)
         job.pause()
         wait_for(lambda: job.state == "paused")
+    assert job.state == "stopped"
+
+
+def test_leaving_the_block_right_after_pausing_stops(long):
+    with vp.connect("sim://puma560", start=long.start) as arm:
+        job = arm.run(long, wait=False)
+        job.pause()
+    assert job.state == "stopped"
+
+
+def test_leaving_the_block_at_an_override_of_zero_stops(long):
+    with vp.connect("sim://puma560", start=long.start) as arm:
+        job = arm.run(long, wait=False)
+        arm.override = 0.0
     assert job.state == "stopped"
 
 
@@ -305,6 +346,8 @@ def test_latencies_are_measured(short):
     assert 0 <= report.latency_p50 <= report.latency_p99 <= report.latency_max
     assert 0 < report.compute_p50 <= report.compute_max
     assert report.wall_time > 0
+    assert report.missed_cycles >= report.overruns
+    assert report.lost_records == 0
 
 
 SCRIPT = """

@@ -193,10 +193,54 @@ def test_an_unknown_picture_is_refused(motion, tmp_path):
         motion.plot(tmp_path / "x.png", "torque")
 
 
-def test_outputs_change_where_the_point_is_passed(motion):
-    log = vp.simulate(motion)
-    assert motion.corners[0].move == 0
-    assert log.t[-1] >= motion.duration - 0.002
+def test_outputs_change_where_the_point_is_passed(puma, abc):
+    program = vp.Program(puma, start=abc["A"])
+    program.movej(abc["B"], zone=vp.joint_deviation(0.05)).set_do(3, True).movej(abc["C"])
+    with vp.connect("sim://puma560", start=abc["A"]) as arm:
+        log = arm.run(program).log
+    on = log.outputs == 1 << 3
+    first = int(np.argmax(on))
+    assert 0 < first < len(log) - 1
+    assert not on[:first].any()
+    assert on[first:].all()
+    # The corner is passed where the arm is nearest to its point.
+    nearest = int(np.argmin(np.linalg.norm(log.q - abc["B"], axis=1)))
+    assert abs(first - nearest) * 0.002 < 0.05
+
+
+@pytest.mark.parametrize("name", ["x.bmp", "x", "x.png.gz"])
+def test_a_picture_of_no_known_format_is_refused(motion, tmp_path, name):
+    with pytest.raises(errors.BadArgumentError, match="ends in"):
+        motion.plot(tmp_path / name)
+
+
+def test_a_picture_into_no_folder_is_refused(motion, tmp_path):
+    with pytest.raises(errors.FileError, match="no_such_folder"):
+        motion.plot(tmp_path / "no_such_folder" / "x.png")
+
+
+def test_a_log_into_no_folder_is_refused(short, tmp_path):
+    with vp.connect("sim://puma560", start=short.start) as arm:
+        log = arm.run(short).log
+    for save in (log.save_npz, log.save_csv):
+        with pytest.raises(errors.FileError, match="no_such_folder"):
+            save(tmp_path / "no_such_folder" / "log")
+
+
+def test_no_instants_are_refused(motion):
+    with pytest.raises(errors.BadArgumentError, match="times is empty"):
+        motion.at([])
+
+
+@pytest.mark.parametrize("program", ["x", None, 3])
+def test_simulating_no_program_is_refused(program):
+    with pytest.raises(errors.BadArgumentError, match="program is"):
+        vp.simulate(program)
+
+
+def test_knots_of_a_name_are_refused(puma, abc):
+    with pytest.raises(errors.BadArgumentError, match="load_robot"):
+        vp.insert_knots("puma560", puma.fk(abc["A"]), puma.fk(abc["B"]))
 
 
 def test_corners_tell_what_became_of_the_zone(puma, abc):

@@ -1,6 +1,8 @@
 """Teach and playback: no point is ever lost, no damaged file overwritten."""
 
 import json
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -36,7 +38,8 @@ def test_every_record_is_on_disk_when_it_returns(file, puma, abc):
     for count, key in enumerate("ABC", start=1):
         points.record(key, abc[key])
         assert len(vp.PointList(file)) == count
-        assert list(file.parent.iterdir()) == [file]  # nothing left lying about
+        # Nothing is left lying about but what the next one waits at.
+        assert {p.name for p in file.parent.iterdir()} == {"points.json", ".points.json.lock"}
 
 
 def test_a_known_name_is_replaced_in_its_place(points, file, abc):
@@ -58,6 +61,62 @@ def test_two_lists_on_one_file_lose_nothing(points, file, abc):
     points.record("D", abc["A"])
     other.record("E", abc["A"])
     assert list(vp.PointList(file)) == ["A", "B", "C", "D", "E"]
+
+
+TEACH = """
+import sys, viapoint as vp
+points = vp.PointList(sys.argv[1], vp.load_robot("puma560"))
+for i in range(100):
+    points.record(f"{sys.argv[2]} {i}", [0.01 * i, 0, 0, 0, 0, 0])
+"""
+
+
+def test_two_processes_that_teach_at_once_lose_nothing(file):
+    processes = [
+        subprocess.Popen([sys.executable, "-c", TEACH, str(file), name]) for name in ("x", "y")
+    ]
+    assert [process.wait(timeout=120) for process in processes] == [0, 0]
+    assert set(vp.PointList(file)) == {f"{name} {i}" for name in "xy" for i in range(100)}
+
+
+def test_a_point_outside_the_limits_is_not_recorded(points, file):
+    before = file.read_bytes()
+    with pytest.raises(errors.JointLimitError, match='point "D": joint 2') as caught:
+        points.record("D", [0, 9, 0, 0, 0, 0])
+    assert caught.value.joint == 1
+    assert file.read_bytes() == before
+
+
+def test_points_of_different_sizes_are_found_without_a_robot(points, file):
+    document = json.loads(file.read_text(encoding="utf-8"))
+    document["points"][1]["q"].pop()
+    file.write_text(json.dumps(document), encoding="utf-8")
+    with pytest.raises(errors.BadProgramError, match=r"points\[1\]"):
+        vp.PointList(file)
+
+
+def test_points_taught_with_other_limits_are_played_with_a_warning(points, file, puma):
+    slow = puma.with_limits(velocity=0.5)
+    other = vp.PointList(file, slow)
+    with pytest.warns(errors.OtherRobotWarning, match=f"puma560.*{puma.fingerprint}"):
+        other.program()
+
+
+def test_a_point_outside_other_limits_is_refused_by_name(points, file, puma):
+    narrow = puma.with_limits(position_max=[3, 1, 4, 3, 2, 4])
+    other = vp.PointList(file, narrow)
+    with (
+        pytest.warns(errors.OtherRobotWarning),
+        pytest.raises(errors.JointLimitError, match='point "A": joint 2'),
+    ):
+        other.program()
+
+
+def test_a_file_without_a_fingerprint_is_played(points, file):
+    document = json.loads(file.read_text(encoding="utf-8"))
+    del document["robot_fingerprint"]
+    file.write_text(json.dumps(document), encoding="utf-8")
+    assert len(vp.PointList(file).program()) == 2
 
 
 def test_the_arm_teaches_where_it_stands(file, puma, abc):
@@ -154,6 +213,14 @@ DAMAGES = {
     "twice": lambda text: text.replace('"name": "B"', '"name": "A"'),
     "a list": lambda text: "[]",
 }
+
+
+@pytest.mark.parametrize("content", [b"\xff\xfe{}", b"[" * 100_000])
+def test_a_file_that_is_no_text_or_too_deep_is_named(file, content):
+    file.write_bytes(content)
+    with pytest.raises(errors.BadProgramError, match=r"points\.json"):
+        vp.PointList(file)
+    assert file.read_bytes() == content
 
 
 @pytest.mark.parametrize("damage", DAMAGES)

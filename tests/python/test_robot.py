@@ -172,3 +172,44 @@ def test_a_damaged_robot_file_names_file_and_place(tmp_path):
 def test_limits_are_copies(puma):
     puma.limits.velocity[:] = 0.0
     assert (puma.limits.velocity > 0).all()
+
+
+@pytest.mark.parametrize("name", [None, 3, ["puma560"]])
+def test_a_robot_that_is_no_name_is_refused(name):
+    with pytest.raises(errors.BadArgumentError, match="name_or_path"):
+        vp.load_robot(name)
+
+
+@pytest.mark.parametrize("name", ["panda", "puma560", "rpp", "scara", "two_link", "ur5e"])
+def test_a_saved_robot_is_the_same(name, tmp_path):
+    robot = vp.load_robot(name).with_limits(velocity=0.123456789)
+    robot.save(tmp_path / "own.yaml")
+    again = vp.load_robot(tmp_path / "own.yaml")
+    assert again.fingerprint == robot.fingerprint
+    q = 0.1 * np.arange(1, robot.joints + 1)
+    np.testing.assert_array_equal(again.fk(q), robot.fk(q))
+
+
+def test_a_saved_robot_without_kinematics_is_the_same(tmp_path):
+    robot = vp.joint_robot(
+        2, velocity=1, acceleration=[2, 3], jerk=9, position_max=2.5,
+        coupling=[[1, -1]], lower=[-1], upper=[2],
+    )  # fmt: skip
+    robot.save(tmp_path / "own.yaml")
+    assert vp.load_robot(tmp_path / "own.yaml").fingerprint == robot.fingerprint
+
+
+def test_a_robot_is_saved_as_yaml_only(puma, tmp_path):
+    with pytest.raises(errors.BadArgumentError, match="yaml"):
+        puma.save(tmp_path / "own.txt")
+    with pytest.raises(errors.FileError, match="no_such_folder"):
+        puma.save(tmp_path / "no_such_folder" / "own.yaml")
+
+
+def test_infinite_position_limits_are_none():
+    arguments = {"velocity": 1, "acceleration": 1, "jerk": 1}
+    robot = vp.joint_robot(2, position_min=-np.inf, position_max=[1, np.inf], **arguments)
+    assert robot.limits.position_min.tolist() == [-np.inf, -np.inf]
+    assert robot.limits.position_max.tolist() == [1, np.inf]
+    with pytest.raises(errors.BadArgumentError, match="position_min"):
+        vp.joint_robot(2, position_min=np.inf, **arguments)

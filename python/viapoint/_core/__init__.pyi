@@ -14,6 +14,7 @@ from . import profile
 
 __all__: list[str] = [
     "ANGLE_TOLERANCE",
+    "CYCLE",
     "Certificate",
     "ControllerLoop",
     "Corner",
@@ -28,7 +29,6 @@ __all__: list[str] = [
     "POSITION_TOLERANCE",
     "PlannedMotion",
     "Problem",
-    "ROTATION_ROUNDING",
     "RobotModel",
     "RunReport",
     "Singularity",
@@ -44,10 +44,7 @@ __all__: list[str] = [
     "load_robot",
     "plan",
     "profile",
-    "program_from_json",
     "read_file",
-    "rotation_exp",
-    "rotation_log",
     "run_states",
     "simulate",
     "write_file_atomically",
@@ -265,6 +262,10 @@ class RobotModel:
     def singularity(
         self, q: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
     ) -> Singularity: ...
+    def to_yaml(self) -> str:
+        """
+        The description as a .yaml file that reads back to the same numbers.
+        """
     def tool_rates(
         self,
         q: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
@@ -400,14 +401,14 @@ class MotionProgram:
         file: str,
         line: typing.SupportsInt | typing.SupportsIndex,
     ) -> None: ...
-    def kind(self, step: typing.SupportsInt | typing.SupportsIndex) -> str:
-        """
-        "movej", "movel", "wait", "set_do" or "timed".
-        """
     def save(self, path: str) -> None: ...
-    def source(self, step: typing.SupportsInt | typing.SupportsIndex) -> tuple[str, int]:
+    def set_tolerance(
+        self,
+        position: typing.SupportsFloat | typing.SupportsIndex,
+        angle: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> None:
         """
-        File and line (from 1; 0 where unknown) of a step.
+        How far the tool may be from its straight lines [m, rad].
         """
     def targets(
         self,
@@ -622,6 +623,10 @@ class Log:
         """
         A dict of arrays, one row a cycle.
         """
+    def head(self, count: typing.SupportsInt | typing.SupportsIndex) -> Log:
+        """
+        The first `count` cycles.
+        """
     def save_csv(self, path: str) -> None:
         """
         Writes the same table as viapoint-controller --log.
@@ -645,6 +650,16 @@ class RunReport:
     def latency_p50(self) -> float: ...
     @property
     def latency_p99(self) -> float: ...
+    @property
+    def lost_records(self) -> int:
+        """
+        Cycles that found no room in the log.
+        """
+    @property
+    def missed_cycles(self) -> int:
+        """
+        Cycles that overruns slept through.
+        """
     @property
     def overruns(self) -> int:
         """
@@ -687,8 +702,6 @@ class ControllerLoop:
         start: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
         *,
         cycle: typing.SupportsFloat | typing.SupportsIndex,
-        priority: typing.SupportsInt | typing.SupportsIndex,
-        lock_memory: bool,
     ) -> None: ...
     def close(self) -> None: ...
     def run(self, motion: PlannedMotion) -> Job: ...
@@ -720,12 +733,7 @@ def builtin_robots() -> list[str]:
     Names of the built-in robots, sorted.
     """
 
-def check(
-    robot: RobotModel,
-    program: MotionProgram,
-    position_tolerance: typing.SupportsFloat | typing.SupportsIndex,
-    angle_tolerance: typing.SupportsFloat | typing.SupportsIndex,
-) -> list[Problem]:
+def check(robot: RobotModel, program: MotionProgram) -> list[Problem]:
     """
     Every problem of a program, in program order.
     """
@@ -763,34 +771,14 @@ def load_robot(name_or_path: str) -> RobotModel:
     A built-in robot by name, or a .yaml or .urdf file.
     """
 
-def plan(
-    robot: RobotModel,
-    program: MotionProgram,
-    position_tolerance: typing.SupportsFloat | typing.SupportsIndex,
-    angle_tolerance: typing.SupportsFloat | typing.SupportsIndex,
-) -> PlannedMotion:
+def plan(robot: RobotModel, program: MotionProgram) -> PlannedMotion:
     """
     Plans; raises the first error of the report.
     """
 
-def program_from_json(text: str, source: str) -> MotionProgram: ...
 def read_file(path: str) -> str:
     """
     The whole text of a file.
-    """
-
-def rotation_exp(
-    vector: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"],
-) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 3]"]:
-    """
-    Rotation matrix of a rotation vector [rad].
-    """
-
-def rotation_log(
-    rotation: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 3]"],
-) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
-    """
-    Rotation vector [rad] of a rotation matrix.
     """
 
 def run_states() -> list[str]:
@@ -819,7 +807,7 @@ def write_file_atomically(path: str, content: str) -> None:
     """
 
 ANGLE_TOLERANCE: float = 0.00017453292519943296
+CYCLE: float = 0.002
 MAX_JOINTS: int = 16
 POSITION_TOLERANCE: float = 5e-05
-ROTATION_ROUNDING: float = 0.02
 __version__: str = "0.1.0"
