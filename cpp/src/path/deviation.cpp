@@ -13,6 +13,10 @@ namespace {
 
 /// A stretch of a piece, halved this often at most: below 2⁻⁴⁰ only rounding is left to refine.
 constexpr int kDeepest = 40;
+/// A piece that needs more stretches than this for its proof is too long: where it comes within a
+/// hair of the tolerance the halving would go on at every depth. Pieces that pass need fewer than
+/// 400, so that a shorter piece costs less than a further search.
+constexpr int kMostStretches = 1000;
 
 struct Stretch {
   double middle;
@@ -156,7 +160,9 @@ std::optional<Deviation> prove_deviation(const ForwardKinematics& arm, const Joi
   const PieceDeviation local(arm, piece, curve, s0, std::isfinite(tolerance.angle));
   Deviation proven;
   std::vector<Stretch> open = {{0.5 * piece.length, 0.5 * piece.length, 0}};
+  int stretches = 0;
   while (!open.empty()) {
+    if (++stretches > kMostStretches) return std::nullopt;
     const Stretch stretch = open.back();
     open.pop_back();
     const StretchDeviation found = local.over(stretch);

@@ -10,7 +10,8 @@
 namespace viapoint {
 
 /// Proves that the piece stays within `tolerance` of the curve from s0 on, and returns the bound
-/// found on the way (at most the tolerance); nothing when it leaves it, or when no proof is found.
+/// found on the way (at most the tolerance); nothing when it leaves it, or when no proof is found
+/// by a bounded search.
 /// An infinite angle tolerance leaves the rotation aside.
 [[nodiscard]] std::optional<Deviation> prove_deviation(const ForwardKinematics& arm,
                                                        const JointPiece& piece,

@@ -5,6 +5,7 @@
 
 #include <Eigen/LU>
 #include <cmath>
+#include <ctime>
 #include <vector>
 
 #include "path/insertion_checks.hpp"
@@ -14,6 +15,7 @@ namespace viapoint {
 namespace {
 
 using testing::expect_sound;
+using testing::problem_of;
 using testing::RandomLine;
 
 /// Joints at increasing s.
@@ -160,6 +162,33 @@ TEST(WristSingularity, DoesNotSpinJoint4HoweverSmallQ5Is) {
     EXPECT_LT((sweep_of(found.pieces) - sweep_of(track)).maxCoeff(), 0.05);
     EXPECT_LT((found.knots.back() - track.q.back()).lpNorm<Eigen::Infinity>(), 1e-3);
     EXPECT_LT(found.pieces.size(), 40u);
+  }
+}
+
+/// Processor time of one insertion [s], whatever comes of it.
+double processor_time(const ForwardKinematics& arm, const JointLimits& limits,
+                      const RandomLine& line) {
+  const std::clock_t before = std::clock();
+  (void)problem_of(arm, limits, line.curve, line.start);
+  return static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC;
+}
+
+TEST(WristSingularity, TakesLittleTime) {
+  // Two orders above what is measured; a search without bounds takes tens of seconds.
+  constexpr double kMost = 0.5;
+  const ForwardKinematics arm = testing::puma560();
+  JointVector start(6);
+  start << 0.066, 1.966, -1.677, 2.193, 2.6e-9, -0.491;
+  const Pose from = arm.pose(start);
+  const RandomLine known = {start,
+                            LineCurve::fixed_orientation(
+                                from, from.translation() + Eigen::Vector3d(0.017, 0.011, 0.009))};
+  EXPECT_LT(processor_time(arm, testing::puma560_limits(), known), kMost);
+  EXPECT_LT(processor_time(arm, testing::no_position_limits(6), known), kMost);
+  for (unsigned seed = 0; seed < 2000; ++seed) {
+    SCOPED_TRACE(seed);
+    const RandomLine line = line_from_singular_wrist(arm, seed);
+    ASSERT_LT(processor_time(arm, testing::puma560_limits(), line), kMost);
   }
 }
 
