@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <string>
 
 #include "viapoint/core/error.hpp"
@@ -12,8 +13,17 @@ namespace {
 /// A command this little after a cycle belongs to it [s].
 constexpr double kCommandSlack = 1e-9;
 
-/// A run that takes longer is a mistake, and would fill the memory.
-constexpr std::uint64_t kMostCycles = 10'000'000;
+/// More than an hour at 2 ms, and some 1.4 GB of records. A run that takes longer is a mistake.
+constexpr std::uint64_t kMostCycles = 2'000'000;
+
+[[noreturn]] void refuse(double cycles) {
+  std::ostringstream text;
+  text << "the simulated run takes at least " << cycles << " cycles; at most " << kMostCycles
+       << " fit in its log";
+  throw MotionError(ErrorCode::kBadArgument, text.str(),
+                    {"give a larger override", "resume a pause earlier", "give a longer cycle",
+                     "simulate the program in parts"});
+}
 
 void check(const TimedCommand& command) {
   if (!std::isfinite(command.time) || command.time < 0.0) {
@@ -64,18 +74,16 @@ std::vector<LogRecord> simulate(const Trajectory& trajectory, const JointLimits&
   Interpolator interpolator(limits, cycle, trajectory.at(0.0).q);
   interpolator.begin(trajectory);
   const double seconds = std::chrono::duration<double>(cycle).count();
+  if (trajectory.duration() / seconds > static_cast<double>(kMostCycles))
+    refuse(trajectory.duration() / seconds);
   std::vector<LogRecord> log;
+  double share = 1.0;
   auto next = commands.begin();
   for (std::uint64_t k = 0; interpolator.active(); ++k) {
-    if (k >= kMostCycles) {
-      throw MotionError(
-          ErrorCode::kBadArgument,
-          "the simulated run takes more than " + std::to_string(kMostCycles) + " cycles",
-          {"give a larger override", "resume a pause earlier"});
-    }
     const double now = static_cast<double>(k) * seconds;
     for (; next != commands.end() && next->time <= now + kCommandSlack; ++next) {
       apply(*next, interpolator);
+      if (next->kind == TimedCommand::Kind::kOverride) share = next->value;
     }
     Setpoint setpoint;
     LogRecord record;
@@ -85,6 +93,15 @@ std::vector<LogRecord> simulate(const Trajectory& trajectory, const JointLimits&
     record.stamp = static_cast<std::int64_t>(k) * cycle.count();
     log.push_back(record);
     if (record.state == RunState::kPaused && next == commands.end()) break;
+    // A rate that is what it was told to be stays until the end or the next command.
+    double cycles = static_cast<double>(k) + 1.0;
+    if (record.state == RunState::kPaused) {
+      cycles = next->time / seconds;
+    } else if (record.state == RunState::kRunning && record.rate == share) {
+      cycles += (trajectory.duration() - record.nominal_time) / (share * seconds);
+      if (next != commands.end()) cycles = std::min(cycles, next->time / seconds);
+    }
+    if (cycles > static_cast<double>(kMostCycles)) refuse(cycles);
   }
   return log;
 }

@@ -1,6 +1,10 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <limits>
+#include <string>
+#include <utility>
 
 #include "realtime/random_motion.hpp"
 #include "realtime/rate_path.hpp"
@@ -81,6 +85,47 @@ TEST(Simulate, RefusesBadCommandsAndCycles) {
                    simulate(motion.trajectory, motion.limits, {}, std::chrono::nanoseconds(0))),
                MotionError);
   EXPECT_THROW(static_cast<void>(simulate(Trajectory(), motion.limits, {}, kCycle)), MotionError);
+}
+
+/// What a run that would not end says, and how long it took to say so.
+std::string refusal(const Motion& motion, std::vector<TimedCommand> commands,
+                    std::chrono::nanoseconds cycle) {
+  const auto begin = std::chrono::steady_clock::now();
+  std::string message = "no error";
+  try {
+    static_cast<void>(simulate(motion.trajectory, motion.limits, std::move(commands), cycle));
+  } catch (const MotionError& error) {
+    EXPECT_EQ(error.code(), ErrorCode::kBadArgument);
+    message = error.what();
+  }
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(1))
+      << "the log was filled before";
+  return message;
+}
+
+TEST(Simulate, RefusesRunsLongerThanItsLogBeforeItFillsIt) {
+  using testing::HasSubstr;
+  const Motion motion = motion_of(6);
+  const auto limit = HasSubstr("at most 2000000 fit");
+  EXPECT_THAT(refusal(motion, {{0.0, Kind::kOverride, 1e-6}}, kCycle), limit);
+  EXPECT_THAT(refusal(motion, {{0.05, Kind::kOverride, 1e-6}}, kCycle), limit);
+  EXPECT_THAT(refusal(motion, {{0.05, Kind::kOverride, 1e-300}}, kCycle), limit);
+  EXPECT_THAT(refusal(motion, {{0.05, Kind::kPause, 0.0}, {1e5, Kind::kResume, 0.0}}, kCycle),
+              limit);
+  EXPECT_THAT(refusal(motion, {{0.05, Kind::kOverride, 1e-9}, {1e5, Kind::kOverride, 1.0}}, kCycle),
+              limit);
+  EXPECT_THAT(refusal(motion, {}, std::chrono::nanoseconds(10)), limit);
+}
+
+TEST(Simulate, ASlowRunThatIsMadeQuickerInTimeIsRun) {
+  const Motion motion = motion_of(6);
+  const auto log = simulate(motion.trajectory, motion.limits,
+                            {{0.05, Kind::kOverride, 1e-9},
+                             {5.0, Kind::kPause, 0.0},
+                             {9.0, Kind::kOverride, 1.0},
+                             {9.0, Kind::kResume, 0.0}},
+                            kCycle);
+  EXPECT_EQ(log.back().state, RunState::kFinished);
 }
 
 TEST(Simulate, KeepsLimitsAtOtherCyclesToo) {
