@@ -10,9 +10,6 @@ constexpr double kEndSlack = 1e-9;
 /// New cells of the look-ahead a cycle: two are used up at full rate, the rest fills the window in
 /// the first half second.
 constexpr int kCellsACycle = 8;
-/// And pieces looked at for them, which is what bounds a tick: of a motion that passes over more in
-/// a cycle the future stays unknown, and its rate is left as it is until they get sparser.
-constexpr int kPiecesACycle = 256;
 
 }  // namespace
 
@@ -71,7 +68,7 @@ RunState Interpolator::tick(Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKING {
     since_anchor_ = 0;
   }
 
-  lookahead_.advance(now_.tau, kCellsACycle, kPiecesACycle);
+  looked_at_ = lookahead_.advance(now_.tau, kCellsACycle, kPiecesACycle);
   const double curvature = governor_.decide(now_, target(), lookahead_);
   evaluate(curvature, setpoint);
   run_state_ = classify();

@@ -157,6 +157,37 @@ Motion curved_motion(std::mt19937& random) {
   return motion;
 }
 
+Motion dense_motion(int moves) {
+  Motion motion;
+  motion.limits = even_limits(2, 3.0, 3000.0, 3e6);
+  std::vector<TrajectoryPiece> pieces;
+  double q = 0.0;
+  for (int m = 0; m < moves; ++m) {
+    const double size = 1e-8 * (1 + m % 3), direction = m % 2 == 0 ? 1.0 : -1.0;
+    const JerkProfile profile = rest_to_rest(size, 3.0, 3000.0, 3e6);
+    double t = 0.0;
+    for (int k = 0; k < profile.phases; ++k) {
+      const auto phase = static_cast<std::size_t>(k);
+      const double T = profile.duration[phase];
+      if (T <= 0.0) continue;
+      const AxisState s = profile.at(t);
+      TrajectoryPiece piece;
+      piece.duration = T;
+      piece.joints = 2;
+      piece.move = m;
+      piece.timing = {s.q, s.qd * T, 0.5 * s.qdd * T * T, profile.jerk[phase] * T * T * T / 6.0,
+                      0.0, 0.0};
+      piece.path[0] = {q, -q};
+      piece.path[1] = {direction, -direction};
+      pieces.push_back(piece);
+      t += T;
+    }
+    q += direction * size;
+  }
+  motion.trajectory = Trajectory(std::move(pieces), motion.limits);
+  return motion;
+}
+
 Motion random_motion(std::mt19937& random) {
   return whole(random, 0, 1) == 0 ? straight_motion(random) : curved_motion(random);
 }

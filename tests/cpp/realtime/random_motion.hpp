@@ -28,7 +28,9 @@ void append_wait(std::vector<TrajectoryPiece>& pieces, const JointVector& positi
 [[nodiscard]] Motion straight_motion(std::mt19937& random);
 /// A C² curve through random states without a stop; each limit is just what the curve reaches.
 [[nodiscard]] Motion curved_motion(std::mt19937& random);
-/// Either.
+/// Moves to and fro of some 1e-8 rad: pieces of 12 us, some 170 to 2 ms.
+[[nodiscard]] Motion dense_motion(int moves);
+/// Either straight or curved.
 [[nodiscard]] Motion random_motion(std::mt19937& random);
 
 }  // namespace viapoint

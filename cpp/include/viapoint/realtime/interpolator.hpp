@@ -62,6 +62,12 @@ class Interpolator {
   [[nodiscard]] double rate() const noexcept { return shown_.rate; }
   [[nodiscard]] int move() const noexcept { return move_; }
   [[nodiscard]] RunState state() const noexcept { return run_state_; }
+  /// Pieces of the motion that the last tick looked at, for the future: at most kPiecesACycle.
+  [[nodiscard]] int pieces_looked_at() const noexcept { return looked_at_; }
+
+  /// Bounds the tick: of a motion that passes over more pieces in a cycle the future stays unknown,
+  /// and its rate as it is, until they get sparser.
+  static constexpr int kPiecesACycle = 256;
 
  private:
   [[nodiscard]] double target() const noexcept;
@@ -85,6 +91,7 @@ class Interpolator {
   RunState run_state_ = RunState::kIdle;
   RateState shown_;
   int move_ = -1;
+  int looked_at_ = 0;
   std::uint64_t cycles_ = 0;
   std::uint64_t outputs_ = 0;
   std::uint64_t outputs_before_ = 0;  ///< when the motion began

@@ -8,15 +8,15 @@
 ///   - wherever α = γ = 0 all limits hold, for ever: ρ <= 1 only makes each term smaller;
 ///   - so a change of ρ is safe when it is known to come back to α = 0 within the limits.
 /// Each cycle the governor seeks the strongest push γ toward the wanted rate for which it can prove
-/// such a way back: cycle by cycle, over the ranges that q', q'', q''' take there (Lookahead), with
-/// interval arithmetic, so between the cycles too. It commits to push and way back together, and
-/// where it finds no better push it follows the way back it has. A proven continuation exists at
-/// every moment, whatever is commanded. The way back also tells the rate it ends at, so the push
-/// that makes it end exactly at the wanted rate is found by the same search.
-/// What is kept are the joints' own limits: a planned tool speed is never exceeded either (ρ <= 1),
-/// a planned tool acceleration or a move's scale may be while the rate changes. (The look-ahead of
-/// Dahl & Nielsen 1990 and its followers, which scale the path speed on-line, with a proof in place
-/// of a guess, and for the jerk.)
+/// such a way back: cycle by cycle, over bounds on q', q'', q''' there (Lookahead), with interval
+/// arithmetic, so between the cycles too; where those are not known yet, it proves nothing. It
+/// commits to push and way back together, and where it finds no better push it follows the way back
+/// it has. A proven continuation exists at every moment, whatever is commanded. The way back also
+/// tells the rate it ends at, so the push that makes it end exactly at the wanted rate is found by
+/// the same search. What is kept are the joints' own limits: a planned tool speed is never exceeded
+/// either (ρ <= 1), a planned tool acceleration or a move's scale may be while the rate changes.
+/// (The look-ahead of Dahl & Nielsen 1990 and its followers, which scale the path speed on-line,
+/// with a proof in place of a guess, and for the jerk.)
 #pragma once
 
 #include <array>
