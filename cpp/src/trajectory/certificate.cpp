@@ -45,6 +45,8 @@ class Walk {
         coupling_high_(static_cast<std::size_t>(limits.couplings())),
         coupling_low_(static_cast<std::size_t>(limits.couplings())) {
     findings_.jumps.resize(joints_);
+    findings_.steps.resize(joints_);
+    sizes_.resize(joints_);
     findings_.start.resize(joints_);
     findings_.end.resize(joints_);
     for (JointPeaks& joint : peaks_) {
@@ -160,12 +162,29 @@ class Walk {
         const auto at = static_cast<Eigen::Index>(i);
         JointStates& jump = findings_.jumps[i];
         note(jump.position, now.q[at] - before_->q[at], time_, piece.move);
+        note_step(findings_.steps[i], now.q[at] - before_->q[at],
+                  explained_step(std::max(sizes_[i], size_of(piece, i))), piece.move);
         note(jump.velocity, now.qd[at] - before_->qd[at], time_, piece.move);
         note(jump.acceleration, now.qdd[at] - before_->qdd[at], time_, piece.move);
       }
     }
     before_ = piece.at(piece.duration);
+    for (std::size_t i = 0; i < joints_; ++i) sizes_[i] = size_of(piece, i);
     last_move_ = piece.move;
+  }
+
+  /// What the rounding of q(u) is in proportion to: the terms it is the sum of.
+  static double size_of(const TrajectoryPiece& piece, std::size_t joint) {
+    double sum = 0.0;
+    for (const auto& coefficients : piece.path) sum += std::abs(coefficients[joint]);
+    return sum;
+  }
+
+  void note_step(PositionStep& most, double step, double explained, int move) const {
+    if (std::isnan(most.worst.value)) return;
+    const bool first = most.explained == 0.0;
+    if (!first && std::abs(step) * most.explained <= most.worst.value * explained) return;
+    most = {{std::abs(step), time_, move}, explained};
   }
 
   static void note(Worst& worst, double step, double time, int move) {
@@ -229,6 +248,7 @@ class Walk {
   double time_ = 0.0;  ///< where the piece under way begins [s]
   bool started_ = false;
   std::optional<JointState> before_;  ///< where the piece before ended
+  std::vector<double> sizes_;         ///< of the terms of its positions
   int last_move_ = 0;
   std::vector<JointPeaks> peaks_;
   std::vector<PlacedPeak> coupling_high_, coupling_low_;

@@ -1,6 +1,7 @@
 #include "trajectory/certificate_problems.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <sstream>
@@ -11,12 +12,17 @@
 namespace viapoint {
 namespace {
 
-/// Distance beyond a position limit that counts as rounding [rad or m].
+/// Step of position, and distance beyond a position limit, that counts as rounding: this much [rad
+/// or m], or so many ε of the position where that is more. (Bounds of positions include 32 ε.)
 constexpr double kPositionSlack = 1e-9;
-/// Step of the position between pieces that counts as rounding [rad or m].
-constexpr double kPositionStep = 1e-9;
+constexpr double kStepUnits = 8.0, kPositionUnits = 64.0;
 /// Step of velocity and acceleration, and what an end at rest may have, as a share of the limit.
 constexpr double kRateStep = 1e-6;
+
+double rounding(double size, double units) {
+  const double relative = units * std::numeric_limits<double>::epsilon() * std::abs(size);
+  return std::isfinite(relative) ? std::max(kPositionSlack, relative) : kPositionSlack;
+}
 
 /// Which problems come before which, whatever their size.
 enum class Rank { kStep, kEnd, kPosition, kRate };
@@ -67,7 +73,7 @@ class Collector {
 
   void position(const std::string& who, ErrorCode code, const Worst& worst, double limit,
                 double outside, std::optional<int> joint) {
-    if (outside <= kPositionSlack) return;
+    if (outside <= rounding(limit, kPositionUnits)) return;
     std::ostringstream text;
     text << who << " comes to " << worst.value << " at " << worst.time << " s, " << outside
          << " beyond its limit of " << limit << ' ' << kPosition.unit;
@@ -117,13 +123,15 @@ class Collector {
 
 }  // namespace
 
+double explained_step(double size) { return rounding(size, kStepUnits); }
+
 std::vector<Problem> find_problems(const Certificate& certificate, const Findings& findings,
                                    const JointLimits& limits) {
   Collector found;
   for (int i = 0; i < limits.joints(); ++i) {
     const auto at = static_cast<std::size_t>(i);
     const JointStates& jump = findings.jumps[at];
-    found.step(kPosition, i, jump.position, kPositionStep);
+    found.step(kPosition, i, findings.steps[at].worst, findings.steps[at].explained);
     found.step(kVelocity, i, jump.velocity, kRateStep * limits.velocity[i]);
     found.step(kAcceleration, i, jump.acceleration, kRateStep * limits.acceleration[i]);
 

@@ -175,14 +175,14 @@ TEST(CertificateSearch, FindsAViolationPlantedBetweenTwoSamplesAMicrosecondApart
 
 TEST(CertificateSearch, FindsASpikeWithinOnePieceOfARestingArm) {
   // u = 16 x²(1-x)² goes to 1 and back, q = height u²: C² with rest at both ends.
-  for (const double duration : {0.9e-6, 1e-3}) {
+  for (const double duration : {0.9e-4, 1e-3}) {
     SCOPED_TRACE(duration);
-    const double height = 1e3 * duration;
+    const double height = duration;
     std::vector<TrajectoryPiece> pieces = {
         one_joint_piece(0.5, {0, 0, 0, 0, 0, 0}),
         one_joint_piece(duration, {0, 0, 0, 0, 0, 0}, {0, 0, 16, -32, 16, 0}),
         one_joint_piece(0.5, {0, 0, 0, 0, 0, 0})};
-    const JointLimits limits = uniform_limits(1, 1e6, 100.0, 1e12, 1e21);
+    const JointLimits limits = uniform_limits(1, 1e6, 0.1, 1e12, 1e12);
     EXPECT_TRUE(certify(pieces, limits).holds());
     pieces[1].path[2][0] = height;
     const Certificate certificate = certify(pieces, limits);
@@ -192,7 +192,7 @@ TEST(CertificateSearch, FindsASpikeWithinOnePieceOfARestingArm) {
     // 256 x⁴(1-x)⁴ is steepest at x = 1/2 - 1/(2√7).
     const double x = 0.5 - 0.5 / std::sqrt(7.0);
     const double slope = 256 * 4 * std::pow(x * (1 - x), 3) * (1 - 2 * x);
-    EXPECT_NEAR(certificate.velocity[0].value, slope * height / duration, 1e-6);
+    EXPECT_NEAR(certificate.velocity[0].value, slope * height / duration, 1e-9);
   }
 }
 

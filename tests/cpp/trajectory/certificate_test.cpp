@@ -202,6 +202,21 @@ TEST(Certificate, RefusesPiecesThatDoNotMeet) {
   EXPECT_EQ(of_code(acceleration, ErrorCode::kDiscontinuous).size(), 1U);
 }
 
+TEST(Certificate, TakesAStepForRoundingByTheSizeOfThePositions) {
+  constexpr double kFar = 1e8;
+  JointLimits limits = generous();
+  limits.position_max.setConstant(1e9);
+  const auto certified = [&](double step) {
+    return certify(
+        std::vector{smooth_move(kFar, kFar + 1, 1.0), smooth_move(kFar + 1 + step, kFar, 1.0)},
+        limits);
+  };
+  EXPECT_TRUE(certified(1e-7).holds());
+  const Certificate certificate = certified(1e-6);
+  ASSERT_EQ(certificate.problems.size(), 1U);
+  EXPECT_EQ(certificate.problems[0].code, ErrorCode::kDiscontinuous);
+}
+
 TEST(Certificate, RefusesATimingThatLeavesItsPath) {
   for (const auto& timing : {std::array<double, 6>{0, 0, 0, 10.0, -15.0, 6.0 + 1e-6},
                              std::array<double, 6>{-1e-6, 0, 0, 10.0, -15.0, 6.0},

@@ -132,5 +132,41 @@ TEST(ExtremeLimits, TimeCornersWhateverTheRatioOfLimits) {
   }
 }
 
+TEST(ExtremeLimits, TimeMovesFarFromZeroSoThatTheyAreCertified) {
+  for (std::uint64_t seed = 0; seed < 400; ++seed) {
+    SCOPED_TRACE(::testing::Message() << "seed " << seed);
+    Random random(seed);
+    const double far = decades(random, 1.0, 1e13);
+    auto points = random_walk(random, 3, 2 + static_cast<int>(seed % 3), far, 3.0 * far);
+    const bool away = seed % 2 == 0;  // a long way off, but short moves
+    if (away) {
+      points = random_walk(random, 3, 2, 0.5, 1.0);
+      for (JointVector& point : points) point += JointVector::Constant(3, std::min(far, 1e9));
+    }
+    const JointPath path = cornered_path(points, away ? 0.02 : 0.02 * far);
+    JointLimits limits = random_limits(random, 3, 0.5);
+    limits.position_min.setConstant(-1e15);
+    limits.position_max.setConstant(1e15);
+    const Certificate certificate = certify(parameterize(path, limits), limits);
+    ASSERT_TRUE(certificate.holds()) << certificate.problems.front().describe();
+  }
+}
+
+TEST(ExtremeLimits, LetAJointGoToItsLimitFarFromZero) {
+  for (const double limit : {1e5, 1e8, 1e12}) {
+    SCOPED_TRACE(limit);
+    JointLimits limits = limits_of(JointVector::Constant(1, 2.0), JointVector::Constant(1, 20.0),
+                                   JointVector::Constant(1, 200.0));
+    limits.position_max[0] = limit;
+    JointPath path;
+    path.append(JointPiece::line(JointVector::Constant(1, 0.3 * limit),
+                                 JointVector::Constant(1, limit), 1.0));
+    const Certificate certificate = certify(parameterize(path, limits), limits);
+    EXPECT_TRUE(certificate.holds()) << certificate.problems.front().describe();
+    limits.position_max[0] = limit * (1.0 - 1e-10);
+    EXPECT_FALSE(certify(parameterize(path, limits), limits).holds());
+  }
+}
+
 }  // namespace
 }  // namespace viapoint::testing

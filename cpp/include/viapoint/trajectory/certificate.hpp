@@ -51,11 +51,12 @@ inline constexpr double kLimitSlack = 1e-6;
 /// of u, 4 ε of u's monomials, and 1.4e-13 of the composed coefficients where they were halved; all
 /// of it below 1e-9 unless the terms of u cancel to a thousandth of their size or less.
 ///
-/// A problem is: a share above 1 + kLimitSlack; a position or coupled limit left by more than 1e-9;
-/// a step between pieces of more than 1e-9 in position or 1e-6 of the limit in velocity or
-/// acceleration (kDiscontinuous); more than that share of velocity or acceleration at an end
-/// (kNotAtRest); a piece that is malformed, not finite, or whose u leaves [0, 1] by more than 1e-9
-/// (kBadArgument).
+/// A problem is: a share above 1 + kLimitSlack; a position or coupled limit left by more than 1e-9,
+/// or 64 ε of the limit where that is more (from 7e4 rad or m on); a step between pieces of more
+/// than 1e-9 in position, or 8 ε of the terms of q(u) there (from 5.6e5 on), or 1e-6 of the limit in
+/// velocity or acceleration (kDiscontinuous); more than that share of velocity or acceleration at an
+/// end (kNotAtRest); a piece that is malformed, not finite, or whose u leaves [0, 1] by more than
+/// 1e-9 (kBadArgument).
 /// @throws MotionError(kBadLimits) from limits.validate(); (kBadArgument) for no pieces at all
 /// Real-time: not. Cost: linear in pieces. Threads: any.
 [[nodiscard]] Certificate certify(std::span<const TrajectoryPiece> pieces,
