@@ -8,10 +8,10 @@ import viapoint as vp
 from viapoint import deg
 
 robot = vp.load_robot("ur5e")
-home = [0, -90, 90, -90, -90, 0] * deg
+home = deg * [0, -90, 90, -90, -90, 0]
 program = vp.Program(robot, start=home, scale=0.5, name="there")
-program.movej([60, -70, 70, -90, -90, 30] * deg, zone=vp.joint_deviation(0.05))
-program.movej([90, -100, 100, -90, -60, 0] * deg)
+program.movej(deg * [60, -70, 70, -90, -90, 30], zone=vp.joint_deviation(0.05))
+program.movej(deg * [90, -100, 100, -90, -60, 0])
 motion = program.plan()
 
 with vp.connect("sim://ur5e", start=home) as arm:

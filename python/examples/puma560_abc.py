@@ -2,6 +2,8 @@
 
 Runs as ``python puma560_abc.py``; ``viapoint run puma560_abc.py`` adds the progress bar, the
 figures, the log of every 2 ms setpoint and the pictures.
+
+The textbook is the one that docs/maths.md describes.
 """
 
 import numpy as np
@@ -14,9 +16,9 @@ from viapoint import deg, mm
 robot = vp.load_robot("puma560")
 console = Console()
 
-A = [-100.4577, 70.6108, 48.3997, 0.0, 60.9896, 29.2746] * deg
-B = [-52.1158, -1.4358, 30.2060, -121.3834, -11.4781, -178.4572] * deg
-C = [0.0955, 65.7969, 14.3196, 15.3377, -20.1730, 30.0401] * deg
+A = deg * [-100.4577, 70.6108, 48.3997, 0.0, 60.9896, 29.2746]
+B = deg * [-52.1158, -1.4358, 30.2060, -121.3834, -11.4781, -178.4572]
+C = deg * [0.0955, 65.7969, 14.3196, 15.3377, -20.1730, 30.0401]
 pose_b, pose_c = robot.fk(B), robot.fk(C)
 blend = 50 * mm
 
@@ -25,7 +27,8 @@ def line_distance(points: np.ndarray, start: np.ndarray, end: np.ndarray) -> np.
     """Distance of points (k, 3) from the straight line between two others [m]."""
     along = end - start
     share = np.clip((points - start) @ along / (along @ along), 0.0, 1.0)
-    return np.linalg.norm(points - (start + np.outer(share, along)), axis=1)
+    distance: np.ndarray = np.linalg.norm(points - (start + np.outer(share, along)), axis=1)
+    return distance
 
 
 def figures(job: vp.Job) -> list[str]:
@@ -63,6 +66,10 @@ report = least.check()
 console.print("Straight lines with the least rotation: ", end="")
 console.print(report)
 leg = report.errors[0]
+assert leg.joint is not None
+assert leg.share is not None
+assert leg.value is not None
+assert leg.limit is not None
 console.print(
     f"  → {leg.code} of joint {leg.joint + 1} after {100 * leg.share:.0f} % of the leg: "
     f"{leg.value / deg:.0f}° of {leg.limit / deg:.0f}° allowed (line {leg.line})\n"

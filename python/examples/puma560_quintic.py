@@ -2,6 +2,8 @@
 
 From Rx(π) at (0.4, 0.2, 0) to Rx(π/2) at (0.4, -0.2, 0) in 5 s: inverse kinematics, a law on all
 joints, and back through forward kinematics.
+
+The textbook is the one that docs/maths.md describes.
 """
 
 import numpy as np

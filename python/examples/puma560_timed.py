@@ -1,15 +1,17 @@
 """The classic fixed-time form of the same job, for study (textbook §3): 501 samples in one second.
 
 It starts and ends at full speed, so it plans, samples and plots, and a drive refuses it.
+
+The textbook is the one that docs/maths.md describes.
 """
 
 import viapoint as vp
 from viapoint import deg
 
 robot = vp.load_robot("puma560")
-A = [-100.4577, 70.6108, 48.3997, 0.0, 60.9896, 29.2746] * deg
-B = [-52.1158, -1.4358, 30.2060, -121.3834, -11.4781, -178.4572] * deg
-C = [0.0955, 65.7969, 14.3196, 15.3377, -20.1730, 30.0401] * deg
+A = deg * [-100.4577, 70.6108, 48.3997, 0.0, 60.9896, 29.2746]
+B = deg * [-52.1158, -1.4358, 30.2060, -121.3834, -11.4781, -178.4572]
+C = deg * [0.0955, 65.7969, 14.3196, 15.3377, -20.1730, 30.0401]
 
 joint = vp.Program(robot, start=A, name="timed joint move")
 joint.timed([(A, 0.0), (B, 0.5), (C, 0.5)], t_acc=0.2, space="joint")

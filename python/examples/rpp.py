@@ -1,4 +1,7 @@
-"""The RPP arm from (0, 0.2, 0.5) to (1, 1.2, 0.5) (textbook §5): a turn and two slides."""
+"""The RPP arm from (0, 0.2, 0.5) to (1, 1.2, 0.5) (textbook §5): a turn and two slides.
+
+The textbook is the one that docs/maths.md describes.
+"""
 
 import numpy as np
 

@@ -1,4 +1,7 @@
-"""A SCARA picks and places (textbook §5): tool pointing down, straight up and down."""
+"""A SCARA picks and places (textbook §5): tool pointing down, straight up and down.
+
+The textbook is the one that docs/maths.md describes.
+"""
 
 import numpy as np
 

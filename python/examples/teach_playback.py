@@ -1,4 +1,7 @@
-"""Teach three points, keep them in a file, play them back (textbook §6)."""
+"""Teach three points, keep them in a file, play them back (textbook §6).
+
+The textbook is the one that docs/maths.md describes.
+"""
 
 import tempfile
 from pathlib import Path
@@ -9,11 +12,11 @@ import viapoint as vp
 from viapoint import deg, mm
 
 robot = vp.load_robot("puma560")
-home = [0, -60, 60, 0, 45, 0] * deg
+home = deg * [0, -60, 60, 0, 45, 0]
 where = [
-    ("above", [20, -50, 55, 0, 45, 10] * deg),
-    ("seam start", [25, -35, 40, 0, 50, 10] * deg),
-    ("seam end", [40, -35, 40, 0, 50, 10] * deg),
+    ("above", deg * [20, -50, 55, 0, 45, 10]),
+    ("seam start", deg * [25, -35, 40, 0, 50, 10]),
+    ("seam end", deg * [40, -35, 40, 0, 50, 10]),
 ]
 
 with tempfile.TemporaryDirectory() as folder:

@@ -1,4 +1,7 @@
-"""The planar two-link arm from (3, 0) to (2, 2) (textbook §5): two branches, one straight line."""
+"""The planar two-link arm from (3, 0) to (2, 2) (textbook §5): two branches, one straight line.
+
+The textbook is the one that docs/maths.md describes.
+"""
 
 import numpy as np
 

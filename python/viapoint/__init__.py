@@ -6,8 +6,8 @@ Motion programs in, proven 2 ms setpoints out::
     from viapoint import deg, mm
 
     robot = vp.load_robot("puma560")
-    program = vp.Program(robot, start=[0, 0, 0, 0, 30, 0] * deg)
-    program.movej([20, 30, -10, 0, 40, 0] * deg, zone=20 * mm).movel(position=[0.5, 0.2, 0.3])
+    program = vp.Program(robot, start=deg * [0, 0, 0, 0, 30, 0])
+    program.movej(deg * [20, 30, -10, 0, 40, 0], zone=20 * mm).movel(position=[0.5, 0.2, 0.3])
     with vp.connect("sim://puma560", start=program.start) as arm:
         arm.run(program)
 

@@ -10,7 +10,20 @@ Vector = npt.NDArray[np.float64]
 
 
 class Unit(float):
-    """A factor to SI; times a list or tuple it gives an array."""
+    """A factor to SI; times a list or tuple, on either side, it gives an array.
+
+    Type checkers take a list on the left for a repetition: there write ``deg * [10, 20]``.
+    """
+
+    @overload  # type: ignore[override]
+    def __mul__(self, other: float) -> float: ...
+    @overload
+    def __mul__(self, other: Sequence[float] | Sequence[Sequence[float]]) -> Vector: ...
+    def __mul__(self, other: float | Sequence[float] | Sequence[Sequence[float]]) -> float | Vector:
+        """Scale a number, or every number of a list."""
+        if isinstance(other, (list, tuple)):
+            return np.asarray(other, dtype=np.float64) * float(self)
+        return super().__mul__(other)  # type: ignore[operator]
 
     @overload
     def __rmul__(self, other: float) -> float: ...
