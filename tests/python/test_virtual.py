@@ -1,0 +1,124 @@
+"""Scripts under ``viapoint check``: the arm in virtual time behaves like the real one."""
+
+import time
+
+import numpy as np
+import pytest
+
+import viapoint as vp
+from viapoint import _session, errors
+
+
+class _Virtual(_session.Session):
+    virtual = True
+
+
+@pytest.fixture(autouse=True)
+def in_virtual_time():
+    with _session.use(_Virtual()):
+        yield
+
+
+@pytest.fixture
+def motion(puma, abc):
+    return vp.Program(puma, start=abc["A"], scale=0.2).movej(abc["B"]).plan()
+
+
+@pytest.fixture
+def arm(motion):
+    with vp.connect("sim://puma560", start=motion.start) as connected:
+        yield connected
+
+
+def polled(condition, looks=200):
+    """Tell whether the condition comes true when looked at again and again."""
+    return any(condition() for _ in range(looks))
+
+
+def test_a_run_ends_where_it_should_without_waiting(arm, motion):
+    begin = time.monotonic()
+    job = arm.run(motion)
+    assert time.monotonic() - begin < 0.5 * motion.duration
+    assert job.state == "finished"
+    np.testing.assert_allclose(arm.joints, motion.end, atol=1e-9)
+    np.testing.assert_array_equal(job.log.q, vp.simulate(motion).q)
+
+
+def test_a_script_that_polls_gets_to_the_end(arm, motion):
+    job = arm.run(motion, wait=False)
+    assert job.state == "running"
+    assert polled(lambda: job.ended)
+
+
+def test_pause_rests_on_the_path_and_resume_goes_on(arm, motion):
+    job = arm.run(motion, wait=False)
+    assert polled(lambda: job.nominal_time > 0.3 * motion.duration)
+    job.pause()
+    assert polled(lambda: job.state == "paused")
+    rests = arm.joints
+    assert job.wait(0.01) is False
+    np.testing.assert_array_equal(arm.joints, rests)
+    assert np.abs(rests - motion.end).max() > 0.05
+    job.resume()
+    assert job.wait() is True
+    assert job.state == "finished"
+    states = [vp.RunLog.STATES[s] for s in job.log.state]
+    assert [s for i, s in enumerate(states) if i == 0 or states[i - 1] != s] == [
+        "running",
+        "pausing",
+        "paused",
+        "running",
+        "finished",
+    ]
+
+
+def test_stop_ends_on_the_path(arm, motion):
+    job = arm.run(motion, wait=False)
+    job.stop()
+    assert job.wait()
+    assert job.state == "stopped"
+    np.testing.assert_array_equal(arm.joints, job.log.q[-1])
+    assert np.abs(arm.joints - motion.end).max() > 0.05
+
+
+def test_an_override_slows_the_rest_of_the_run(arm, motion):
+    job = arm.run(motion, wait=False)
+    arm.override = 0.5
+    job.wait()
+    assert job.report.wall_time > 1.5 * motion.duration
+
+
+@pytest.mark.parametrize("rest", [lambda a, j: j.pause(), lambda a, j: setattr(a, "override", 0.0)])
+def test_leaving_the_block_at_rest_stops(motion, rest):
+    with vp.connect("sim://puma560", start=motion.start) as arm:
+        job = arm.run(motion, wait=False)
+        rest(arm, job)
+    assert job.state == "stopped"
+
+
+def test_a_paused_run_keeps_the_arm_busy(arm, motion):
+    job = arm.run(motion, wait=False)
+    job.pause()
+    with pytest.raises(errors.BusyError):
+        arm.run(motion)
+    assert arm.busy
+
+
+def test_what_the_drive_would_refuse_is_refused(arm, motion):
+    arm.run(motion)
+    with pytest.raises(errors.NotAtStartError):
+        arm.run(motion)
+
+
+def test_a_closed_arm_refuses(motion):
+    arm = vp.connect("sim://puma560", start=motion.start)
+    arm.close()
+    for use in (lambda: arm.run(motion), lambda: arm.joints, lambda: arm.override):
+        with pytest.raises(errors.DriveFaultError, match="no longer connected"):
+            use()
+
+
+@pytest.mark.parametrize("cycle", [0.0, 5e-5, 2.0, "fast"])
+def test_a_bad_cycle_is_refused(cycle):
+    with pytest.raises(errors.BadArgumentError, match="cycle"):
+        vp.connect("sim://puma560", cycle=cycle)
