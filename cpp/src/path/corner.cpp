@@ -76,6 +76,16 @@ class CornerFit {
     return corner;
   }
 
+  /// Why no cut is left. @param refuted whether a corner that fits was tried and kept no zone
+  Corner refuse_all(bool refuted) const {
+    const double most = std::min(legs_.chord(CornerLegs::kBefore, room_before_),
+                                 legs_.chord(CornerLegs::kAfter, room_after_));
+    // Written so that NaN is no room.
+    if (!(most > kShortestCut)) return refuse("no room: a leg is too short for a corner");
+    if (refuted) return refuse("no corner was proven to stay within the zone: stop at the point");
+    return refuse("the zone is too small for a corner");
+  }
+
   /// Cuts as far back as the zone's radius reaches along each leg.
   Corner fit_radius() {
     double cut_before =
@@ -85,6 +95,7 @@ class CornerFit {
     const bool short_before = cut_before >= room_before_;
     const bool short_after = cut_after >= room_after_;
     balance(cut_before, cut_after);
+    bool refuted = false;
     for (int attempt = 0; attempt < kProofs; ++attempt) {
       const CornerShape shape(legs_, cut_before, cut_after);
       if (!shape.valid(kShortestCut)) break;
@@ -93,10 +104,11 @@ class CornerFit {
       if (proven <= zone_.size) {
         return finish(shape, proven, short_before || short_after);
       }
+      refuted = true;
       cut_before *= kProofShrink;
       cut_after *= kProofShrink;
     }
-    return refuse("no room: a leg is too short for a corner");
+    return refuse_all(refuted);
   }
 
   /// Makes neither cut much longer than the other (in joint distance).
@@ -159,7 +171,7 @@ class CornerFit {
                                                   kLeastMove, 1.0 - kLeastMove)
                   : std::min(most, chord * std::min(kMostGrowth, aim / proven));
     }
-    return refuse("no room: a leg is too short for a corner");
+    return refuse_all(std::isfinite(refused_chord));
   }
 
   CornerShape shape_of(double chord) const {

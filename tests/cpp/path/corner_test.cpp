@@ -315,6 +315,41 @@ TEST(RoundCorner, StopsAtAReversalAndWithoutRoom) {
   EXPECT_FALSE(round_corner(nullptr, before, turned(1.0), {ZoneKind::kRadius, 0.1}, 1, 1).possible);
 }
 
+TEST(RoundCorner, SaysWhyThereIsNoCorner) {
+  const JointVector u1 = JointVector::Unit(2, 0);
+  const JointVector u2 = JointVector::Unit(2, 1);
+  const JointVector zero = JointVector::Zero(2);
+  const JointPath before = joint_line(-u1, zero, 1.0);
+  const auto reason = [&](const JointPath& after, double size, double room) {
+    const Corner corner =
+        round_corner(nullptr, before, after, {ZoneKind::kJointDeviation, size}, room, room);
+    EXPECT_FALSE(corner.possible);
+    return corner.reason;
+  };
+  const JointPath straight = joint_line(zero, u2, 1.0);
+  EXPECT_NE(reason(straight, 0.02, 1e-9).find("too short"), std::string::npos);
+  EXPECT_NE(reason(straight, 1e-9, 0.5).find("zone is too small"), std::string::npos);
+  // The leg after leaves the zone right at the corner, comes back, and stays near for long: no
+  // corner that cuts it keeps the zone, though both legs are long.
+  const ForwardKinematics arm = testing::rpp();  // joints 2 and 3 slide the tool up and outwards
+  const auto at = [](double up, double out) {
+    return JointVector(Eigen::Vector3d(0.0, up, 0.5 + out));
+  };
+  const auto knot = [&](double out, double rate) {
+    const JointVector zero3 = JointVector::Zero(3);
+    return PathPoint{at(0.0, out), rate * JointVector::Unit(3, 2), zero3, zero3};
+  };
+  JointPath stray;
+  stray.append(JointPiece::hermite(knot(0.0, 1.0), knot(0.4, 0.0), 1e-3));
+  stray.append(JointPiece::hermite(knot(0.4, 0.0), knot(0.001, 0.0), 1e-3));
+  stray.append(JointPiece::hermite(knot(0.001, 0.0), knot(0.1, 0.1), 1.0));
+  const Corner refuted = round_corner(&arm, joint_line(at(-1.0, 0.0), at(0.0, 0.0), 1.0), stray,
+                                      {ZoneKind::kRadius, 0.02}, 0.9, 0.9);
+  EXPECT_FALSE(refuted.possible);
+  EXPECT_NE(refuted.reason.find("proven"), std::string::npos) << refuted.reason;
+  EXPECT_EQ(refuted.reason.find("too short"), std::string::npos) << refuted.reason;
+}
+
 TEST(RoundCorner, GoesStraightOnWhereNothingTurns) {
   const JointVector u = JointVector::Ones(4).normalized();
   const JointVector zero = JointVector::Zero(4);
