@@ -72,6 +72,23 @@ TEST(LineCurve, CountsTheAngleWhenItTurnsOnTheSpot) {
   EXPECT_EQ(curve.at(0.2).p1.norm(), 0.0);
 }
 
+TEST(LineCurve, TravelsAsFarInMetresWhateverItsParameterCounts) {
+  // A turn of 1 rad with a travel about the 1 nm where s becomes the angle.
+  Pose from = Pose::Identity();
+  from.translation() = Eigen::Vector3d(0.3, 0.2, 0.1);
+  for (const double travel : {0.0, 1e-10, 0.9e-9, 1.1e-9, 1e-8, 1e-6, 0.1}) {
+    SCOPED_TRACE(travel);
+    Pose to = from;
+    to.translation().x() += travel;
+    to.rotate(Eigen::AngleAxisd(1.0, Eigen::Vector3d::UnitZ()));
+    const LineCurve curve(from, to);
+    const CurvePoint middle = curve.at(0.5 * curve.length());
+    EXPECT_NEAR(middle.p1.norm() * curve.length(), travel, 1e-15);
+    EXPECT_NEAR(middle.w.norm() * curve.length(), 1.0, 1e-12);
+    EXPECT_NEAR(rotation_distance(from.linear(), middle.rotation), 0.5, 1e-12);
+  }
+}
+
 TEST(LineCurve, FixedOrientationKeepsTheStartingOne) {
   std::mt19937 random(3);
   const Pose from = random_pose(random);
