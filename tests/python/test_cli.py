@@ -7,6 +7,7 @@ import subprocess
 import sys
 import textwrap
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -152,6 +153,85 @@ def test_an_error_of_the_scripts_own_shows_its_place(tmp_path):
     assert "ZeroDivisionError" in done.stderr
 
 
+def test_an_error_of_the_scripts_own_shows_its_frames_alone(tmp_path):
+    done = _command("run", write(tmp_path / "broken.py", "\ndef f():\n    1 / 0\nf()\n"))
+    frames = re.findall(r'File "([^"]*)", line (\d+)', done.stderr)
+    assert [(Path(file).name, line) for file, line in frames] == [
+        ("broken.py", "4"),
+        ("broken.py", "3"),
+    ]
+
+
+def test_a_script_that_is_no_python_is_told_where(tmp_path):
+    done = _command("run", write(tmp_path / "broken.py", "x = 1\nx +* 2\n"))
+    assert done.returncode == 1
+    assert re.search(r'broken.py", line 2', done.stderr)
+    assert "runpy" not in done.stderr
+
+
+@pytest.mark.parametrize("command", ["run", "plot", "export"])
+def test_a_folder_that_cannot_be_written_is_refused_before_anything_moves(tmp_path, command):
+    (tmp_path / "file").write_text("")
+    path = write(tmp_path / "job.py", name="p", target=GOOD)
+    done = _command(command, path, "--out", str(tmp_path / "file" / "out"))
+    assert done.returncode == 1
+    assert "cannot be written" in done.stderr
+    assert "the script saw" not in done.stdout
+
+
+def test_names_are_no_markup(tmp_path):
+    path = write(tmp_path / "job.py", name="[red]p[/]", target=GOOD)
+    for command in ("check", "run"):
+        done = _command(command, path)
+        assert done.returncode == 0, done.stderr
+        assert "[red]p[/]" in done.stdout
+
+
+def test_piped_reports_do_not_break_paths(tmp_path):
+    folder = tmp_path / ("long" * 30)
+    folder.mkdir()
+    path = write(folder / "job.py", name="p", target="[9, 0, 0, 0, 0, 0]")
+    assert path + ":6" in _command("check", path).stderr
+
+
+CHECKED = """
+    import viapoint as vp
+    robot = vp.load_robot("puma560")
+    bad = vp.Program(robot, start=[0] * 6, name="bad").movej([9, 0, 0, 0, 0, 0])
+    good = vp.Program(robot, start=[0] * 6, name="good").movej([0.1] * 6)
+    {body}
+"""
+
+
+@pytest.mark.parametrize(
+    ("body", "code", "shows"),
+    [
+        ("bad.check()", 1, ["bad"]),
+        ("good.check()", 0, ["good"]),
+        ("good.plan()", 0, ["good"]),
+        ("good.plan(); bad.check()", 1, ["good", "bad"]),
+        ("vp.connect('sim://puma560').run(good); bad.check()", 1, ["good", "bad"]),
+        ("\n    try: bad.plan()\n    except vp.MotionError: good.plan()", 1, ["bad", "good"]),
+    ],
+)
+def test_check_counts_every_program(tmp_path, body, code, shows):
+    done = _command("check", write(tmp_path / "job.py", CHECKED.replace("{body}", body)))
+    assert done.returncode == code, done.stdout + done.stderr
+    assert re.findall(r"^(\w+)(?:, [\d.]+ s)?: ", done.stdout, re.M) == shows
+
+
+def test_a_program_file_of_an_own_robot_needs_the_robot(tmp_path, puma):
+    slow = puma.with_limits(velocity=0.5)
+    slow.save(tmp_path / "slow.yaml")
+    vp.Program(slow, start=[0] * 6).movej([0.1] * 6).save(tmp_path / "p.json")
+    assert _command("check", "p.json").returncode == 1
+    for command in ("check", "plot", "export", "run"):
+        done = _command(command, "p.json", "--robot", "slow.yaml")
+        assert done.returncode == 0, done.stderr
+    script = write(tmp_path / "job.py", name="p", target=GOOD)
+    assert "--robot" in _command("check", script, "--robot", "slow.yaml").stderr
+
+
 def test_robots_lists_the_built_in_ones():
     done = _command("robots")
     assert done.returncode == 0, done.stderr
@@ -164,7 +244,8 @@ def test_version():
     assert done.stdout.strip() == vp.__version__
 
 
-def test_ctrl_c_stops_the_run_on_its_path_and_keeps_its_log(tmp_path):
+@pytest.mark.parametrize("signum", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_stops_the_run_on_its_path_and_keeps_its_log(tmp_path, signum):
     text = """
         import viapoint as vp
         robot = vp.load_robot("puma560")
@@ -184,7 +265,7 @@ def test_ctrl_c_stops_the_run_on_its_path_and_keeps_its_log(tmp_path):
     assert process.stdout is not None
     assert process.stdout.readline().strip() == "running"
     time.sleep(1.0)
-    process.send_signal(signal.SIGINT)
+    process.send_signal(signum)
     out, err = process.communicate(timeout=60)
     assert process.returncode != 0
     assert "stopped" in out, err
