@@ -321,7 +321,9 @@ class Program:
                 f'The program was written for the robot "{core.robot}" with fingerprint '
                 f'{core.robot_fingerprint}; "{arm.name}" has {arm.fingerprint}.',
                 file=name,
-                ways_out=["Pass the robot it was written for: Program.load(path, robot)."],
+                ways_out=[
+                    "Pass the robot it was written for: Program.load(path, robot), or --robot FILE."
+                ],
             )
         program = cls(arm, start=core.start, name=Path(name).stem)
         program._core = core
