@@ -53,10 +53,10 @@ inline constexpr double kLimitSlack = 1e-6;
 ///
 /// A problem is: a share above 1 + kLimitSlack; a position or coupled limit left by more than 1e-9,
 /// or 64 ε of the limit where that is more (from 7e4 rad or m on); a step between pieces of more
-/// than 1e-9 in position, or 8 ε of the terms of q(u) there (from 5.6e5 on), or 1e-6 of the limit in
-/// velocity or acceleration (kDiscontinuous); more than that share of velocity or acceleration at an
-/// end (kNotAtRest); a piece that is malformed, not finite, or whose u leaves [0, 1] by more than
-/// 1e-9 (kBadArgument).
+/// than 1e-9 in position, or 8 ε of the terms of q(u) there (from 5.6e5 on), or 1e-6 of the limit
+/// in velocity or acceleration (kDiscontinuous); more than that share of velocity or acceleration
+/// at an end (kNotAtRest); a piece that is malformed, not finite, or whose u leaves [0, 1] by more
+/// than 1e-9 (kBadArgument).
 /// @throws MotionError(kBadLimits) from limits.validate(); (kBadArgument) for no pieces at all
 /// Real-time: not. Cost: linear in pieces. Threads: any.
 [[nodiscard]] Certificate certify(std::span<const TrajectoryPiece> pieces,
