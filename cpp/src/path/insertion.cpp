@@ -15,7 +15,8 @@ namespace viapoint {
 namespace {
 
 /// Shortest step, as a share of the curve: shorter ones mean that the curve cannot be followed on.
-constexpr double kShortestStep = 1e-9;
+/// (Joints that turn within less of it make motions of minutes, which nobody wants.)
+constexpr double kShortestStep = 1e-8;
 /// A knot whose rate misses the curve's by more than this share does not follow it.
 constexpr double kRateResidual = 1e-6;
 /// A quintic Hermite piece with exact ends errs like the sixth power of its length.
