@@ -113,6 +113,15 @@ struct ControllerLoop::Impl {
 
   [[nodiscard]] bool busy() const { return job != nullptr && !job->ended(); }
 
+  /// A run that shows its end is over, though its last records may still be on their way.
+  void await_log_of_ended_run() const {
+    const auto over = [](RunState state) {
+      return state == RunState::kFinished || state == RunState::kStopped ||
+             state == RunState::kFault;
+    };
+    while (busy() && over(job->state())) std::this_thread::sleep_for(kCompanionPeriod);
+  }
+
   /// Carries the log out of the real-time part, and takes back what is spent.
   void accompany() {
     block_signals();
@@ -173,6 +182,7 @@ std::shared_ptr<Job> ControllerLoop::run(std::shared_ptr<const Trajectory> traje
     throw MotionError(ErrorCode::kDriveFault, impl_->powered.drive().fault(),
                       {"clear the fault at the drive, then connect again"});
   }
+  impl_->await_log_of_ended_run();
   if (impl_->busy()) {
     throw MotionError(ErrorCode::kBusy, "a run is already under way",
                       {"wait for its end", "stop it first"});

@@ -35,7 +35,10 @@ void CycleRunner::wait_for_cycle() noexcept {
 }
 
 void CycleRunner::do_cycle() noexcept VIAPOINT_NONBLOCKING {
-  if (channels_.faulted.load(std::memory_order_relaxed)) return;
+  if (channels_.faulted.load(std::memory_order_relaxed)) {
+    refuse_next();
+    return;
+  }
   if (motion_ == nullptr) begin_next();
   interpolator_.set_override(channels_.override_share.load(std::memory_order_relaxed));
   if (motion_ != nullptr) interpolator_.wish(motion_->wish.load(std::memory_order_acquire));
@@ -61,6 +64,13 @@ void CycleRunner::begin_next() noexcept VIAPOINT_NONBLOCKING {
   interpolator_.begin(*motion_->trajectory);
   cycle_of_run_ = 0;
   arriving_ = false;
+}
+
+void CycleRunner::refuse_next() noexcept VIAPOINT_NONBLOCKING {
+  QueuedMotion* motion = channels_.motions.pop();
+  if (motion == nullptr) return;
+  motion->state.store(RunState::kFault, std::memory_order_release);
+  channels_.motions.give_back(motion);
 }
 
 void CycleRunner::record(std::int64_t compute) noexcept VIAPOINT_NONBLOCKING {

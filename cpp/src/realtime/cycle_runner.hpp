@@ -43,6 +43,8 @@ class CycleRunner {
   void wait_for_cycle() noexcept;
   void do_cycle() noexcept VIAPOINT_NONBLOCKING;
   void begin_next() noexcept VIAPOINT_NONBLOCKING;
+  /// Gives back a motion that was queued while the drive failed.
+  void refuse_next() noexcept VIAPOINT_NONBLOCKING;
   void record(std::int64_t compute) noexcept VIAPOINT_NONBLOCKING;
   void finish() noexcept VIAPOINT_NONBLOCKING;
   void let_others_run() noexcept;

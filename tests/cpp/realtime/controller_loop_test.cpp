@@ -274,6 +274,41 @@ TEST(ControllerLoop, ADriveThatFailsEndsTheRunWithItsMessage) {
   EXPECT_EQ(history->exchanges, exchanges) << "the failed drive was spoken to again";
 }
 
+TEST(ControllerLoop, ADriveThatFailsWhileAMotionIsAdmittedEndsThatRun) {
+  // The fault may fall anywhere between the look at the drive and the first cycle of the motion.
+  for (int trial = 0; trial < 200; ++trial) {
+    SCOPED_TRACE(trial);
+    auto history = std::make_shared<DriveHistory>();
+    auto loop = virtual_loop(std::make_unique<WatchedDrive>(history));
+    loop->set_override(0.001);  // the fault comes before its end
+    std::thread saboteur([&] {
+      std::this_thread::sleep_for(std::chrono::microseconds(5 * trial));
+      history->failing = true;
+    });
+    std::shared_ptr<Job> job;
+    try {
+      job = loop->run(move_by(1.0, kLimits));
+    } catch (const MotionError& error) {
+      EXPECT_EQ(error.code(), ErrorCode::kDriveFault);
+    }
+    saboteur.join();
+    if (job != nullptr) {
+      EXPECT_EQ(code_of([&] { (void)job->wait(10.0); }), ErrorCode::kDriveFault);
+      EXPECT_EQ(job->state(), RunState::kFault);
+    }
+  }
+}
+
+TEST(ControllerLoop, TheNextRunMayFollowAsSoonAsOneShowsItsEnd) {
+  auto loop = virtual_loop();
+  for (int trial = 0; trial < 30; ++trial) {
+    SCOPED_TRACE(trial);
+    const double from = trial % 2 == 0 ? 0.0 : 0.1;
+    const auto job = loop->run(move_by(trial % 2 == 0 ? 0.1 : -0.1, kLimits, from));
+    while (job->state() != RunState::kFinished) std::this_thread::yield();
+  }
+}
+
 TEST(ControllerLoop, ADriveOfOtherJointsIsRefused) {
   EXPECT_EQ(code_of([] { virtual_loop(std::make_unique<SimulatedDrive>(JointVector::Zero(3))); }),
             ErrorCode::kBadArgument);
