@@ -81,6 +81,7 @@ void bind_error(py::module_& m) {
       });
   m.def("error_codes", &error_codes, "Every error code's name, in the order of the C++ enum.");
 
+  // pybind11 takes a plain function of a value. NOLINTNEXTLINE(performance-unnecessary-value-param)
   py::register_exception_translator([](std::exception_ptr pointer) {
     if (!pointer) return;
     try {

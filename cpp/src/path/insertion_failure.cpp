@@ -52,7 +52,7 @@ Ahead look_ahead(const CurveFollower& follower, const PathPoint& here, double s,
   for (int start = 0; start < kProbeStarts && !best.reached; ++start) {
     JointVector guess = here.q;
     const double spread = 0.1 * start;
-    for (int i = 0; i < guess.size(); ++i) guess[i] += spread * normal(random);
+    for (double& value : guess) value += spread * normal(random);
     const Twist miss = follower.nearest_miss(s, guess);
     if (miss.norm() < best.miss.norm()) best.miss = miss;
     best.reached = best.miss.head<3>().norm() <= kReachedShare * options.position_tolerance &&

@@ -183,7 +183,7 @@ TEST(YamlDescription, KeepsAJointRobot) {
 TEST(YamlDescription, RefusesAFileCutShortAnywhere) {
   for (const std::string& text : {std::string(kGood), to_yaml(arm("puma560")->description()),
                                   read_file(VIAPOINT_TEST_ROBOTS "/panda.yaml")}) {
-    const size_t last = text.find_last_not_of("\n");
+    const size_t last = text.find_last_not_of('\n');
     for (size_t size = 0; size <= last; ++size) {
       const Problem problem = problem_of(text.substr(0, size));
       ASSERT_TRUE(problem.code == ErrorCode::kBadRobot || problem.code == ErrorCode::kBadLimits)

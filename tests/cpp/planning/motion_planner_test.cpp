@@ -207,8 +207,7 @@ TEST_F(PumaPlanner, KeepsToolSpeedAndScale) {
   program.add(PtpMove{JointTarget{puma_b()}}, tenth);
   const PlannedMotion motion = planner_.plan(program.program());
   double fastest = 0.0;
-  for (size_t i = 0; i < motion.trajectory.pieces().size(); ++i) {
-    const TrajectoryPiece& piece = motion.trajectory.pieces()[i];
+  for (const TrajectoryPiece& piece : motion.trajectory.pieces()) {
     for (int k = 0; k <= 20; ++k) {
       const JointState state = piece.at(piece.duration * k / 20.0);
       if (piece.move == 0) {

@@ -19,10 +19,13 @@ void note() {
 // Below operator new too: Eigen calls malloc itself. Sanitizers bring their own malloc, so there
 // only operator new is watched.
 extern "C" {
+// The C library's own names for what stands behind malloc and the rest.
+// NOLINTBEGIN(bugprone-reserved-identifier,readability-identifier-naming)
 void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t number, std::size_t size);
 void* __libc_realloc(void* block, std::size_t size);
 void __libc_free(void* block);
+// NOLINTEND(bugprone-reserved-identifier,readability-identifier-naming)
 
 void* malloc(std::size_t size) {
   note();
