@@ -16,8 +16,8 @@ namespace viapoint {
 /// A node and where it stands: file, and the keys that lead to it.
 class YamlValue {
  public:
-  YamlValue(YAML::Node node, std::string source, std::string path)
-      : node_(std::move(node)), source_(std::move(source)), path_(std::move(path)) {}
+  YamlValue(const YAML::Node& node, std::string source, std::string path)
+      : node_(node), source_(std::move(source)), path_(std::move(path)) {}
 
   [[nodiscard]] double number() const;
   [[nodiscard]] int whole_number() const;

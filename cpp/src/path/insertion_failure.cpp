@@ -81,9 +81,10 @@ double length_of_chain(const ForwardKinematics& arm, const JointLimits& limits,
   const ChainFrames frames = arm.frames(start);
   double length = 0.0;
   for (int i = 0; i < arm.joints(); ++i) {
-    const Eigen::Vector3d& here = frames.origin[static_cast<size_t>(i)];
-    const Eigen::Vector3d next = i + 1 < arm.joints() ? frames.origin[static_cast<size_t>(i + 1)]
-                                                      : frames.pose_base_tool.translation();
+    const auto joint = static_cast<size_t>(i);
+    const Eigen::Vector3d& here = frames.origin[joint];
+    const Eigen::Vector3d next =
+        i + 1 < arm.joints() ? frames.origin[joint + 1] : frames.pose_base_tool.translation();
     length += (next - here).norm();
     if (arm.type(i) == JointType::kPrismatic) {
       length += std::abs(start[i]) +
