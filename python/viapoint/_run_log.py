@@ -17,7 +17,7 @@ from ._samples import Samples
 
 @dataclass(frozen=True, repr=False)
 class RunLog:
-    """The setpoints of a run, one row a cycle.
+    """The setpoints of a run, one row a cycle; a rest keeps its first two rows.
 
     Attributes
     ----------
