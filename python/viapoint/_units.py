@@ -15,6 +15,7 @@ class Unit(float):
     Type checkers take a list on the left for a repetition: there write ``deg * [10, 20]``.
     """
 
+    # float promises a float for every factor; a list, which float refuses, gives an array here.
     @overload  # type: ignore[override]
     def __mul__(self, other: float) -> float: ...
     @overload
@@ -23,6 +24,7 @@ class Unit(float):
         """Scale a number, or every number of a list."""
         if isinstance(other, (list, tuple)):
             return np.asarray(other, dtype=np.float64) * float(self)
+        # What is no number either, float refuses in its own words.
         return super().__mul__(other)  # type: ignore[operator]
 
     @overload
@@ -35,6 +37,7 @@ class Unit(float):
         """Scale a number, or every number of a list."""
         if isinstance(other, (list, tuple)):
             return np.asarray(other, dtype=np.float64) * float(self)
+        # As above.
         return super().__rmul__(other)  # type: ignore[operator]
 
 

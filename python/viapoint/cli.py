@@ -16,7 +16,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 from rich.markup import escape
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
 from . import _core, _session
@@ -116,7 +116,7 @@ class ProgressRecorder(Recorder):
     def __init__(self) -> None:
         super().__init__(virtual=False)
         self._bar: Progress | None = None
-        self._tasks: dict[int, int] = {}
+        self._tasks: dict[int, TaskID] = {}
 
     def waiting(self, job: Job) -> None:
         """Draw how far the job is."""
@@ -133,7 +133,7 @@ class ProgressRecorder(Recorder):
             self._tasks[id(job)] = self._bar.add_task(
                 escape(job.motion.program.name), total=job.duration
             )
-        self._bar.update(self._tasks[id(job)], completed=job.nominal_time)  # type: ignore[arg-type]
+        self._bar.update(self._tasks[id(job)], completed=job.nominal_time)
 
     def ended(self, job: Job) -> None:
         """Leave the bar where the job ended."""

@@ -16,7 +16,7 @@ The tree::
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from . import _core
 
@@ -140,8 +140,8 @@ class MotionError(Exception):
         return (_rebuild, (type(self), self.message, fields))
 
 
-def _rebuild(cls: type[MotionError], message: str, fields: dict[str, object]) -> MotionError:
-    return cls(message, **fields)  # type: ignore[arg-type]
+def _rebuild(cls: type[MotionError], message: str, fields: dict[str, Any]) -> MotionError:
+    return cls(message, **fields)
 
 
 class LimitError(MotionError):
