@@ -119,7 +119,7 @@ class Motion:
         return self._samples(self._core.sample_at(numbers_of(times, "times").reshape(-1)))
 
     def _samples(self, columns: dict[str, Vector]) -> Samples:
-        # mypy takes a column for a possible robot; the extension gives t, q and its derivatives only.
+        # mypy takes a column for a possible robot; the extension gives t, q and derivatives only.
         return Samples(**columns, robot=self.robot)  # type: ignore[arg-type]
 
     def plot(self, path: str | os.PathLike[str], what: str = "joints") -> None:
