@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 import run_bench
+from benches import core, tables
 
 LINES = (
     '{"bench": "tick", "case": "full_speed", "ticks": 1000000, "p50_us": 0.51234, "checksum": 3}\n'
@@ -13,17 +14,24 @@ LINES = (
 
 
 def test_a_table_has_a_line_a_case_and_the_units_in_its_head():
-    head, rule, first, second = run_bench.table(run_bench.read_lines(LINES)).splitlines()
+    head, rule, first, second = tables.table(core.read_lines(LINES)).splitlines()
     assert head.split() == ["case", "ticks", "p50", "us"]
     assert set(rule) == {"-", " "}
     assert first.split() == ["full_speed", "1000000", "0.5123"]
     assert second.split() == ["pause", "7", "12"]
 
 
+def test_a_table_for_a_document_is_markdown():
+    head, rule, first, _ = tables.markdown(core.read_lines(LINES)).splitlines()
+    assert head == "| case | ticks | p50 us |"
+    assert rule == "| --- | --: | --: |"
+    assert first == "| full_speed | 1000000 | 0.5123 |"
+
+
 @pytest.mark.parametrize("line", ["not json", "[1, 2]", '{"case": "x"}'])
 def test_output_that_is_no_figure_is_refused(line: str):
     with pytest.raises(ValueError, match="no object with bench and case"):
-        run_bench.read_lines(line)
+        core.read_lines(line)
 
 
 def test_the_figures_are_written_with_the_machine_they_are_of(

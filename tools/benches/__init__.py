@@ -1,0 +1,1 @@
+"""What tools/bench measures: one subject a file, and what they share."""

@@ -1,0 +1,37 @@
+"""Subjects that viapoint-bench measures in C++."""
+
+import json
+import subprocess
+from pathlib import Path
+
+from benches.tables import Row
+
+SUBJECTS = ("tick", "plan", "certificate")
+# What a quick look measures: enough to see the order of magnitude.
+QUICK = {"tick": 100_000, "plan": 10, "certificate": 10}
+
+
+def read_lines(text: str) -> list[Row]:
+    """Read what viapoint-bench prints: one JSON object a line.
+
+    Raises
+    ------
+    ValueError
+        A line that is none, or lacks ``bench`` or ``case``.
+    """
+    rows: list[Row] = []
+    for line in filter(None, text.splitlines()):
+        try:
+            row = json.loads(line)
+        except json.JSONDecodeError:
+            row = None
+        if not isinstance(row, dict) or not {"bench", "case"} <= row.keys():
+            raise ValueError(f"viapoint-bench printed {line!r}, no object with bench and case")
+        rows.append(row)
+    return rows
+
+
+def measure(program: Path, subject: str, *, quick: bool) -> list[Row]:
+    """Run one subject of viapoint-bench."""
+    command = [str(program), subject, *([str(QUICK[subject])] if quick else [])]
+    return read_lines(subprocess.run(command, stdout=subprocess.PIPE, text=True, check=True).stdout)
