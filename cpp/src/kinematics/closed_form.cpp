@@ -29,21 +29,23 @@ Elbow bend_elbow(double a, double b, double reach) {
   return {true, 2.0 * std::atan2(std::sqrt(one_minus), std::sqrt(one_plus)), 0.0};
 }
 
-std::vector<ShoulderBranch> turn_shoulder(double x, double y, double side, double held,
-                                          double& out_of_reach) {
+ShoulderBranches turn_shoulder(double x, double y, double side, double held) {
+  ShoulderBranches found;
   const double radius = std::hypot(x, y);
   const double inside = radius - std::abs(side);
   if (inside < -kBoundary) {
-    out_of_reach = -inside;
-    return {};
+    found.out_of_reach = -inside;
+    return found;
   }
   const double forward = std::sqrt(std::max(inside, 0.0) * (radius + std::abs(side)));
+  const double direction = std::atan2(y, x);
   const auto branch = [&](double ahead) {
-    const double q1 = radius < kOnAxis ? held : std::atan2(y, x) - std::atan2(side, ahead);
+    const double q1 = radius < kOnAxis ? held : direction - std::atan2(side, ahead);
     return ShoulderBranch{ahead, q1};
   };
-  if (forward == 0.0) return {branch(0.0)};  // both shoulders are one
-  return {branch(forward), branch(-forward)};
+  found.both = {branch(forward), branch(-forward)};
+  found.count = forward == 0.0 ? 1 : 2;
+  return found;
 }
 
 std::optional<Eigen::Vector3d> nearest_point(const Eigen::Vector3d& origin_a,
@@ -83,6 +85,8 @@ Eigen::Matrix3d about_z(double angle) {
   return out;
 }
 
-double from_half_turns(double angle) { return std::abs(std::remainder(angle, kPi)); }
+double from_half_turns(double angle) {
+  return std::copysign(std::remainder(angle, kPi), std::sin(angle));
+}
 
 }  // namespace viapoint

@@ -1,12 +1,14 @@
 /// @file
-/// What the closed forms of six-axis arms have in common.
+/// What the closed forms have in common.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
+#include "kinematics/inverse_errors.hpp"
+#include "viapoint/kinematics/branch_set.hpp"
 #include "viapoint/kinematics/forward_kinematics.hpp"
 
 namespace viapoint {
@@ -14,37 +16,74 @@ namespace viapoint {
 /// One family of solutions, whole turns left aside.
 struct ClosedBranch {
   JointVector q;
-  /// At a wrist singularity of a spherical wrist only q4 + sign · q6 is determined.
+  /// Where two wrist joints turn about one line only q[first] + sign · q[second] = sum is
+  /// determined [rad].
   bool wrist_free = false;
-  double wrist_sum = 0.0;   ///< q4 + sign · q6 [rad]
-  double wrist_sign = 1.0;  ///< +1 or -1
+  int first = 0;
+  int second = 0;
+  double wrist_sum = 0.0;
+  double wrist_sign = 1.0;
 };
 
-/// What the closed form finds for one pose.
+/// At most kMostBranches branches in a fixed place: no heap.
+class BranchList {
+ public:
+  [[nodiscard]] int size() const { return size_; }
+  [[nodiscard]] bool empty() const { return size_ == 0; }
+  [[nodiscard]] const ClosedBranch* begin() const { return items_.data(); }
+  [[nodiscard]] const ClosedBranch* end() const { return items_.data() + size_; }
+  /// A new branch at the end; the last one is taken again when the list is full.
+  [[nodiscard]] ClosedBranch& add() {
+    if (size_ < kMostBranches) ++size_;
+    ClosedBranch& branch = items_[static_cast<size_t>(size_ - 1)];
+    branch.wrist_free = false;
+    return branch;
+  }
+  template <typename Predicate>
+  void keep_if(Predicate&& keep) {
+    int kept = 0;
+    for (int i = 0; i < size_; ++i) {
+      const ClosedBranch& branch = items_[static_cast<size_t>(i)];
+      if (!keep(branch)) continue;
+      if (kept != i) items_[static_cast<size_t>(kept)] = branch;
+      ++kept;
+    }
+    size_ = kept;
+  }
+
+ private:
+  int size_ = 0;
+  std::array<ClosedBranch, kMostBranches> items_;
+};
+
+/// What the closed form finds for one task.
 struct ClosedSolutions {
-  std::vector<ClosedBranch> branches;
+  BranchList branches;
   double out_of_reach = 0.0;  ///< how far the wrist is out of reach [m]; 0 when it is not
   /// A joint was held at a singular pose, and another value of it might do better.
   bool held = false;
 };
 
-/// Nearness to each of the three singularities.
-struct ArmSingularities {
-  double shoulder = 0.0;  ///< wrist to the plane of axis 1 parallel to axis 2 [m]
-  double elbow = 0.0;     ///< elbow from stretched or folded [rad]
-  double wrist = 0.0;     ///< wrist from the alignment of its axes [rad]
-  double length = 0.0;    ///< upper arm + forearm [m], to compare metres with radians
+/// Signed distances from the singularities: each sign is one side of the configuration.
+struct ArmSides {
+  std::optional<double> shoulder;  ///< wrist to the plane of axis 1 parallel to axis 2 [m]
+  std::optional<double> elbow;     ///< elbow from stretched or folded [rad]
+  std::optional<double> wrist;     ///< wrist from the alignment of its axes [rad]
+  double length = 1.0;             ///< the arm's length, to compare metres with radians [m]
 };
 
-/// The geometry of one kind of arm, read off its chain at q = 0. Immutable. Threads: any.
+/// The geometry of one kind of arm, read off its chain at q = 0. Immutable. Real-time: solve() is
+/// safe. Threads: any.
 class ClosedForm {
  public:
   virtual ~ClosedForm() = default;
   [[nodiscard]] virtual std::string family() const = 0;
-  /// Every branch (up to eight); where a joint is free it takes its value in `held`.
-  [[nodiscard]] virtual ClosedSolutions solve(const Pose& pose_base_tool,
-                                              const JointVector& held) const = 0;
-  [[nodiscard]] virtual ArmSingularities singularities(const JointVector& q) const = 0;
+  /// True where the solver can answer such a task: one of positions may need another closed form.
+  [[nodiscard]] virtual bool answers(const InverseTask& task) const { return !task.position_only; }
+  /// Every branch; where a joint is free it takes its value in `held`. @pre answers(task)
+  virtual void solve(const InverseTask& task, const JointVector& held,
+                     ClosedSolutions& solutions) const = 0;
+  [[nodiscard]] virtual ArmSides sides(const JointVector& q) const = 0;
 };
 
 /// The closed form for this chain, or nothing.
@@ -76,9 +115,14 @@ struct ShoulderBranch {
   double forward = 0.0;  ///< of the point, in the arm's plane, before joint 1 turns [m]
   double q1 = 0.0;       ///< [rad]
 };
-/// @param out_of_reach set when there is none [m]
-[[nodiscard]] std::vector<ShoulderBranch> turn_shoulder(double x, double y, double side,
-                                                        double held, double& out_of_reach);
+struct ShoulderBranches {
+  int count = 0;  ///< 0, 1 (both shoulders are one) or 2
+  std::array<ShoulderBranch, 2> both;
+  double out_of_reach = 0.0;  ///< [m], when there is none
+  [[nodiscard]] const ShoulderBranch* begin() const { return both.data(); }
+  [[nodiscard]] const ShoulderBranch* end() const { return both.data() + count; }
+};
+[[nodiscard]] ShoulderBranches turn_shoulder(double x, double y, double side, double held);
 
 /// Point of line a nearest to line b; nothing when they are parallel.
 [[nodiscard]] std::optional<Eigen::Vector3d> nearest_point(const Eigen::Vector3d& origin_a,
@@ -93,7 +137,7 @@ struct ShoulderBranch {
 [[nodiscard]] Eigen::Matrix3d about_y(double angle);
 [[nodiscard]] Eigen::Matrix3d about_z(double angle);
 
-/// `angle` from the nearest multiple of π, in [0, π/2].
+/// `angle` from the nearest multiple of π, in [0, π/2], with the sign of its sine.
 [[nodiscard]] double from_half_turns(double angle);
 
 }  // namespace viapoint

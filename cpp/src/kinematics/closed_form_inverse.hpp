@@ -6,42 +6,44 @@
 #include <vector>
 
 #include "kinematics/closed_form.hpp"
-#include "kinematics/joint_turns.hpp"
 #include "kinematics/numerical_inverse.hpp"
 
 namespace viapoint {
 
 /// A closed form under joint limits. Immutable. Threads: any.
-class ClosedFormInverse final : public InverseKinematics {
+class ClosedFormInverse final : public LimitedInverse {
  public:
   ClosedFormInverse(const ForwardKinematics& forward, const JointLimits& limits,
                     std::unique_ptr<const ClosedForm> form);
 
-  [[nodiscard]] std::string family() const override;
-  [[nodiscard]] std::vector<JointVector> solve_all(const Pose& pose_base_tool) const override;
-  [[nodiscard]] JointVector solve_near(const Pose& pose_base_tool,
-                                       const JointVector& near) const override;
-  [[nodiscard]] std::vector<JointVector> solve_all(const Eigen::Vector3d& position) const override;
-  [[nodiscard]] JointVector solve_near(const Eigen::Vector3d& position,
-                                       const JointVector& near) const override;
-  [[nodiscard]] JointVector solve_near_unlimited(const Pose& pose_base_tool,
-                                                 const JointVector& near) const override;
+  [[nodiscard]] std::string family() const override { return form_->family(); }
+  [[nodiscard]] std::vector<JointVector> all(const InverseTask& task,
+                                             const JointVector& reference) const override;
+  [[nodiscard]] JointVector near(const InverseTask& task,
+                                 const JointVector& reference) const override;
+  [[nodiscard]] JointVector near_unlimited(const InverseTask& task,
+                                           const JointVector& reference) const override;
+  [[nodiscard]] BranchStatus solve_branches(const Pose& pose_base_tool, const JointVector& near,
+                                            BranchSet& branches) const noexcept override;
 
  private:
-  /// The branches that the forward kinematics confirms.
-  [[nodiscard]] ClosedSolutions branches(const Pose& pose, const JointVector& held) const;
-  /// At a wrist singularity: the turn shared out between joints 4 and 6 so that both keep their
-  /// limits, joint 4 as near to `held` as that allows. Elsewhere the branch itself.
-  [[nodiscard]] std::vector<JointVector> shared(const ClosedBranch& branch,
-                                                const JointVector& held) const;
-  [[nodiscard]] bool confirmed(const Pose& pose, const JointVector& q) const;
+  [[nodiscard]] Configuration sides(const JointVector& q) const override;
+  /// The distinct branches that the forward kinematics confirms.
+  void branches(const InverseTask& task, const JointVector& held, ClosedSolutions& found) const;
+  /// Calls visit(q) for the branch, or, where its wrist is free, for each stretch of whole turns:
+  /// the turn shared out so that both wrist joints keep their limits.
+  template <typename Visit>
+  void each_share(const ClosedBranch& branch, const JointVector& held, Visit&& visit) const;
+  /// The confirmed turn of a candidate nearest to `reference` within the limits.
+  [[nodiscard]] std::optional<JointVector> nearest(const InverseTask& task,
+                                                   const JointVector& candidate,
+                                                   const JointVector& reference) const;
+  /// Nothing within the limits was found.
+  [[noreturn]] void refuse(const InverseTask& task, const ClosedSolutions& found,
+                           const JointVector& held) const;
 
-  ForwardKinematics forward_;
-  JointLimits limits_;
-  JointTurns turns_;
   std::unique_ptr<const ClosedForm> form_;
-  /// For the position alone, and where a joint held at a singular pose leaves nothing.
-  NumericalInverse numerical_;
+  NumericalInverse numerical_;  ///< for tasks the form cannot answer, and joints held badly
 };
 
 }  // namespace viapoint

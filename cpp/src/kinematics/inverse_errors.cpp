@@ -15,6 +15,14 @@ std::string metres(double value) {
   return text;
 }
 
+/// Largest element of RᵀR − I; not a number where the pose has one.
+double off_rotation(const Pose& pose) {
+  const Eigen::Matrix3d r = pose.linear();
+  return (r.transpose() * r - Eigen::Matrix3d::Identity())
+      .cwiseAbs()
+      .maxCoeff<Eigen::PropagateNaN>();
+}
+
 }  // namespace
 
 PoseError pose_error(const Pose& a, const Pose& b) {
@@ -26,13 +34,17 @@ PoseError pose_error(const Pose& a, const Pose& b) {
   return error;
 }
 
+bool is_pose(const Pose& pose) {
+  return pose.translation().allFinite() && off_rotation(pose) <= kPoseTolerance &&
+         pose.linear().determinant() > 0.0;
+}
+
 void require_pose(const Pose& pose) {
+  if (is_pose(pose)) return;
   if (!pose.matrix().allFinite()) {
     throw MotionError(ErrorCode::kBadArgument, "the pose has an element that is not finite");
   }
-  const Eigen::Matrix3d r = pose.linear();
-  const double off = (r.transpose() * r - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  if (off <= kPoseTolerance && r.determinant() > 0.0) return;
+  const double off = off_rotation(pose);
   Problem problem;
   problem.code = ErrorCode::kNotARotation;
   problem.message =

@@ -23,6 +23,24 @@ struct PoseError {
 };
 [[nodiscard]] PoseError pose_error(const Pose& a, const Pose& b);
 
+/// What is asked for: a pose, or a position alone.
+struct InverseTask {
+  explicit InverseTask(const Pose& pose) : goal(pose), position_only(false) {}
+  explicit InverseTask(const Eigen::Vector3d& position)
+      : goal(Eigen::Translation3d(position)), position_only(true) {}
+
+  Pose goal;
+  bool position_only;
+
+  [[nodiscard]] PoseError error_of(const Pose& reached) const {
+    PoseError found = pose_error(reached, goal);
+    if (position_only) found.angle = 0.0;
+    return found;
+  }
+};
+
+/// True for a pose that require_pose() lets pass. Real-time: safe.
+[[nodiscard]] bool is_pose(const Pose& pose);
 /// @throws MotionError(kBadArgument, kNotARotation)
 void require_pose(const Pose& pose);
 /// @throws MotionError(kBadArgument)

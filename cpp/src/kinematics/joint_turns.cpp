@@ -15,7 +15,7 @@ constexpr double kSnap = 1e-7;
 /// Coupled limits are sums of several roundings.
 constexpr double kCouplingSlack = 1e-12;
 /// More turns than this of one branch are of use to nobody: the ones with the least turning stay.
-constexpr size_t kMostTurns = 4096;
+constexpr int kMostTurns = 4096;
 
 double distance_to(double value, double low, double high) {
   return std::max({0.0, low - value, value - high});
@@ -36,7 +36,7 @@ double wrap_near(double angle, double reference) {
 
 JointTurns::JointTurns(const ForwardKinematics& forward, const JointLimits& limits)
     : joints_(forward.joints()), limits_(limits) {
-  for (int i = 0; i < joints_; ++i) types_.push_back(forward.type(i));
+  for (int i = 0; i < joints_; ++i) types_[static_cast<size_t>(i)] = forward.type(i);
 }
 
 bool JointTurns::coupled(const JointVector& q) const {
@@ -73,62 +73,77 @@ std::optional<JointVector> JointTurns::nearest(const JointVector& branch,
 
   // Coupled joints: another turn of some joint may be within the limits.
   std::optional<JointVector> best;
-  for (const JointVector& candidate : all(branch)) {
+  each(branch, reference, [&](const JointVector& candidate) {
     if (!best || is_nearer(candidate, *best, reference)) best = candidate;
-  }
+  });
   return best;
 }
 
-std::vector<double> JointTurns::values(int joint, double angle) const {
+JointTurns::Range JointTurns::range(int joint, double angle, double reference) const {
   const double low = limits_.position_min[joint];
   const double high = limits_.position_max[joint];
-  std::vector<double> out;
   const bool turns = types_[static_cast<size_t>(joint)] == JointType::kRevolute;
   if (!turns || !std::isfinite(low) || !std::isfinite(high)) {
-    double value = turns ? wrap_near(angle, 0.0) : angle;
+    double value = turns ? wrap_near(angle, reference) : angle;
     if (turns && value > high + kSnap) value -= kTurn * std::ceil((value - high - kSnap) / kTurn);
     if (turns && value < low - kSnap) value += kTurn * std::ceil((low - kSnap - value) / kTurn);
-    if (distance_to(value, low, high) <= kSnap) out.push_back(std::clamp(value, low, high));
-    return out;
+    return {value, distance_to(value, low, high) <= kSnap ? 1 : 0};
   }
-  const double first = angle + kTurn * std::ceil((low - kSnap - angle) / kTurn);
-  for (double value = first; value <= high + kSnap && out.size() < kMostTurns; value += kTurn) {
-    out.push_back(std::clamp(value, low, high));
+  double first = angle + kTurn * std::ceil((low - kSnap - angle) / kTurn);
+  double count = std::floor((high + kSnap - first) / kTurn) + 1.0;
+  if (count > kMostTurns) {
+    const double ahead = std::round((reference - first) / kTurn) - 0.5 * kMostTurns;
+    first += kTurn * std::clamp(ahead, 0.0, count - kMostTurns);
+    count = kMostTurns;
   }
-  std::sort(out.begin(), out.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
-  return out;
+  return {first, std::max(0, static_cast<int>(count))};
 }
 
-std::vector<JointVector> JointTurns::all(const JointVector& branch) const {
-  std::vector<std::vector<double>> options;
-  size_t count = 1;
+template <typename Visit>
+void JointTurns::each(const JointVector& branch, const JointVector& reference,
+                      Visit&& visit) const {
+  std::array<Range, kMaxJoints> ranges;
+  const auto end = ranges.begin() + joints_;
+  const auto combinations = [&] {
+    double product = 1.0;
+    for (auto range = ranges.begin(); range != end; ++range) product *= range->count;
+    return product;
+  };
   for (int i = 0; i < joints_; ++i) {
-    options.push_back(values(i, branch[i]));
-    count *= std::min(options.back().size(), kMostTurns + 1);
-    count = std::min(count, kMostTurns + 1);
-    if (options.back().empty()) return {};
+    ranges[static_cast<size_t>(i)] = range(i, branch[i], reference[i]);
   }
-  while (count > kMostTurns) {
-    auto most = std::max_element(options.begin(), options.end(),
-                                 [](const auto& a, const auto& b) { return a.size() < b.size(); });
-    most->pop_back();
-    count = 1;
-    for (const auto& list : options) count = std::min(count * list.size(), kMostTurns + 1);
+  if (combinations() == 0.0) return;
+  while (combinations() > kMostTurns) {
+    const auto most = std::max_element(
+        ranges.begin(), end, [](const Range& a, const Range& b) { return a.count < b.count; });
+    const double middle = most->first + 0.5 * kTurn * (most->count - 1);
+    if (middle < reference[static_cast<int>(most - ranges.begin())]) most->first += kTurn;
+    --most->count;
   }
 
-  std::vector<JointVector> out;
-  std::vector<size_t> digit(static_cast<size_t>(joints_), 0);
+  std::array<int, kMaxJoints> digit{};
   while (true) {
     JointVector q(joints_);
     for (int i = 0; i < joints_; ++i) {
       const auto k = static_cast<size_t>(i);
-      q[i] = options[k][digit[k]];
+      q[i] = std::clamp(ranges[k].first + kTurn * digit[k], limits_.position_min[i],
+                        limits_.position_max[i]);
     }
-    if (coupled(q)) out.push_back(q);
-    size_t place = 0;
-    while (place < digit.size() && ++digit[place] == options[place].size()) digit[place++] = 0;
-    if (place == digit.size()) return out;
+    if (coupled(q)) visit(q);
+    int place = 0;
+    while (place < joints_ &&
+           ++digit[static_cast<size_t>(place)] == ranges[static_cast<size_t>(place)].count) {
+      digit[static_cast<size_t>(place++)] = 0;
+    }
+    if (place == joints_) return;
   }
+}
+
+std::vector<JointVector> JointTurns::all(const JointVector& branch,
+                                         const JointVector& reference) const {
+  std::vector<JointVector> out;
+  each(branch, reference, [&](const JointVector& q) { out.push_back(q); });
+  return out;
 }
 
 LimitExcess JointTurns::excess(const JointVector& branch) const {

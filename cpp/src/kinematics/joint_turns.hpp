@@ -3,6 +3,7 @@
 /// and which of them is nearest.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -37,8 +38,10 @@ class JointTurns {
   /// than rounding at a singular pose is set on its limit: check the result by its pose.
   [[nodiscard]] std::optional<JointVector> nearest(const JointVector& branch,
                                                    const JointVector& reference) const;
-  /// Every turn of `branch` within the limits (of joints without limits: the one nearest zero).
-  [[nodiscard]] std::vector<JointVector> all(const JointVector& branch) const;
+  /// Every turn of `branch` within the limits (of joints without limits: the one nearest to
+  /// `reference`).
+  [[nodiscard]] std::vector<JointVector> all(const JointVector& branch,
+                                             const JointVector& reference) const;
   /// The turn nearest to `reference`, limits left aside.
   [[nodiscard]] JointVector unlimited(const JointVector& branch,
                                       const JointVector& reference) const;
@@ -46,12 +49,19 @@ class JointTurns {
   [[nodiscard]] LimitExcess excess(const JointVector& branch) const;
 
  private:
-  /// The values within the limits of joint i, sorted by size.
-  [[nodiscard]] std::vector<double> values(int joint, double angle) const;
+  /// The turns of one joint within its limits: first, first + 2π, …
+  struct Range {
+    double first = 0.0;
+    int count = 0;
+  };
+  [[nodiscard]] Range range(int joint, double angle, double reference) const;
+  /// Calls visit(q) for every turn of `branch` within all limits. Allocates nothing itself.
+  template <typename Visit>
+  void each(const JointVector& branch, const JointVector& reference, Visit&& visit) const;
   [[nodiscard]] bool coupled(const JointVector& q) const;
 
   int joints_;
-  std::vector<JointType> types_;
+  std::array<JointType, kMaxJoints> types_{};
   JointLimits limits_;
 };
 

@@ -43,7 +43,7 @@ double radical_inverse(int index, int base) {
 
 NumericalInverse::NumericalInverse(const ForwardKinematics& forward, const JointLimits& limits,
                                    std::string why)
-    : forward_(forward), limits_(limits), turns_(forward, limits), why_(std::move(why)) {
+    : LimitedInverse(forward, limits), why_(std::move(why)) {
   JointVector travel = JointVector::Zero(forward_.joints());
   for (int i = 0; i < forward_.joints(); ++i) {
     if (forward_.type(i) != JointType::kPrismatic) continue;
@@ -75,20 +75,15 @@ JointVector NumericalInverse::start(int index) const {
   return q;
 }
 
-PoseError NumericalInverse::error(const Task& task, const JointVector& q) const {
-  PoseError found = pose_error(forward_.pose(q), task.goal);
-  if (task.position_only) found.angle = 0.0;
-  return found;
-}
-
-bool NumericalInverse::redundant(const Task& task) const {
+bool NumericalInverse::redundant(const InverseTask& task) const {
   const auto rows =
       std::count(moves_.begin(), task.position_only ? moves_.begin() + 3 : moves_.end(), true);
   return forward_.joints() > rows;
 }
 
-NumericalInverse::Descent NumericalInverse::descend(const Task& task, JointVector q, bool bounded,
-                                                    int iterations, int patience) const {
+NumericalInverse::Descent NumericalInverse::descend(const InverseTask& task, JointVector q,
+                                                    bool bounded, int iterations,
+                                                    int patience) const {
   using Square = JointMatrix;
   const int joints = forward_.joints();
   const int rows = task.position_only ? 3 : 6;
@@ -155,7 +150,7 @@ NumericalInverse::Descent NumericalInverse::descend(const Task& task, JointVecto
   return best;
 }
 
-void NumericalInverse::add(const Task& task, const JointVector& branch,
+void NumericalInverse::add(const InverseTask& task, const JointVector& branch,
                            std::vector<JointVector>& branches) const {
   constexpr double kSame = 1e-6;
   constexpr double kMerging = 1e-2;  // two branches that meet, as at a stretched elbow
@@ -174,8 +169,9 @@ void NumericalInverse::add(const Task& task, const JointVector& branch,
   branches.push_back(branch);
 }
 
-NumericalInverse::Search NumericalInverse::search(const Task& task, const JointVector& reference,
-                                                  int starts, size_t enough) const {
+NumericalInverse::Search NumericalInverse::search(const InverseTask& task,
+                                                  const JointVector& reference, int starts,
+                                                  size_t enough) const {
   Search found;
   int idle = 0;
   for (int index = 0; index < starts && idle < kIdleStarts; ++index) {
@@ -193,7 +189,7 @@ NumericalInverse::Search NumericalInverse::search(const Task& task, const JointV
     }
     const size_t before = found.inside.size() + found.outside.size();
     const auto turned = turns_.nearest(end.q, reference);
-    if (turned && error(task, *turned).within(kPoseTolerance)) {
+    if (turned && confirmed(task, *turned)) {
       add(task, *turned, found.inside);
       if (found.inside.size() >= enough) return found;
     } else {
@@ -204,44 +200,45 @@ NumericalInverse::Search NumericalInverse::search(const Task& task, const JointV
   return found;
 }
 
-std::vector<JointVector> NumericalInverse::all(const Task& task) const {
-  const JointVector zero = JointVector::Zero(forward_.joints());
-  const Search found = search(task, zero, kSearchStarts, SIZE_MAX);
+std::vector<JointVector> NumericalInverse::all(const InverseTask& task,
+                                               const JointVector& reference) const {
+  const Search found = search(task, reference, kSearchStarts, SIZE_MAX);
   if (found.inside.empty()) refuse(task, found);
   std::vector<JointVector> solutions;
   for (const JointVector& branch : found.inside) {
-    for (const JointVector& q : turns_.all(branch)) {
-      if (error(task, q).within(kPoseTolerance)) solutions.push_back(q);
+    for (const JointVector& q : turns_.all(branch, reference)) {
+      if (confirmed(task, q)) solutions.push_back(q);
     }
   }
   std::sort(solutions.begin(), solutions.end(),
-            [&](const auto& a, const auto& b) { return is_nearer(a, b, zero); });
+            [&](const auto& a, const auto& b) { return is_nearer(a, b, reference); });
   return solutions;
 }
 
-JointVector NumericalInverse::near(const Task& task, const JointVector& near) const {
-  Search found = search(task, near, kStarts, 1);
+JointVector NumericalInverse::near(const InverseTask& task, const JointVector& reference) const {
+  Search found = search(task, reference, kStarts, 1);
   if (found.inside.empty()) refuse(task, found);
-  const double change = (found.inside.front() - near).lpNorm<Eigen::Infinity>();
+  const double change = (found.inside.front() - reference).lpNorm<Eigen::Infinity>();
   if (redundant(task) || change < kNearEnough) return found.inside.front();
   // The descent may have passed over a nearer branch.
-  for (const JointVector& q : search(task, near, kNearStarts, SIZE_MAX).inside) {
-    if (is_nearer(q, found.inside.front(), near)) found.inside.front() = q;
+  for (const JointVector& q : search(task, reference, kNearStarts, SIZE_MAX).inside) {
+    if (is_nearer(q, found.inside.front(), reference)) found.inside.front() = q;
   }
   return found.inside.front();
 }
 
-void NumericalInverse::refuse(const Task& task, const Search& search_result) const {
+void NumericalInverse::refuse(const InverseTask& task, const Search& search_result) const {
   if (!search_result.outside.empty()) {
     refuse_outside_limits(forward_, turns_, search_result.outside);
   }
   // Beyond the boundary the descent creeps, so the distance gets a long one of its own.
+  const InverseTask place_only(Eigen::Vector3d(task.goal.translation()));
   const auto measured = [&](const Search& miss) {
-    return descend({task.goal, true}, miss.nearest, false, kMissIterations, kMissIterations)
+    return descend(place_only, miss.nearest, false, kMissIterations, kMissIterations)
         .error.position;
   };
   if (task.position_only) refuse_unreachable("the position", measured(search_result));
-  const Search place = search({task.goal, true}, JointVector::Zero(forward_.joints()), kStarts, 1);
+  const Search place = search(place_only, JointVector::Zero(forward_.joints()), kStarts, 1);
   if (place.inside.empty() && place.outside.empty()) {
     refuse_unreachable("the position of the pose", measured(place));
   }
@@ -275,35 +272,8 @@ void NumericalInverse::refuse(const Task& task, const Search& search_result) con
   throw MotionError(std::move(problem));
 }
 
-std::vector<JointVector> NumericalInverse::solve_all(const Pose& pose_base_tool) const {
-  require_pose(pose_base_tool);
-  return all({pose_base_tool, false});
-}
-
-JointVector NumericalInverse::solve_near(const Pose& pose_base_tool,
-                                         const JointVector& reference) const {
-  require_pose(pose_base_tool);
-  require_joints(reference, forward_.joints(), "near");
-  return near({pose_base_tool, false}, reference);
-}
-
-std::vector<JointVector> NumericalInverse::solve_all(const Eigen::Vector3d& position) const {
-  require_position(position);
-  return all({Pose(Eigen::Translation3d(position)), true});
-}
-
-JointVector NumericalInverse::solve_near(const Eigen::Vector3d& position,
-                                         const JointVector& reference) const {
-  require_position(position);
-  require_joints(reference, forward_.joints(), "near");
-  return near({Pose(Eigen::Translation3d(position)), true}, reference);
-}
-
-JointVector NumericalInverse::solve_near_unlimited(const Pose& pose_base_tool,
-                                                   const JointVector& reference) const {
-  require_pose(pose_base_tool);
-  require_joints(reference, forward_.joints(), "near");
-  const Task task{pose_base_tool, false};
+JointVector NumericalInverse::near_unlimited(const InverseTask& task,
+                                             const JointVector& reference) const {
   Search found;
   for (int index = 0; index < kStarts; ++index) {
     const Descent end =

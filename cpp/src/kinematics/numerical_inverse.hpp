@@ -6,9 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "kinematics/inverse_errors.hpp"
-#include "kinematics/joint_turns.hpp"
-#include "viapoint/kinematics/inverse_kinematics.hpp"
+#include "kinematics/limited_inverse.hpp"
 
 namespace viapoint {
 
@@ -16,25 +14,19 @@ namespace viapoint {
 /// from the points of a Halton sequence (Halton 1960), in turn free (wrapped into the limits at the
 /// end) and held within the limits all the way. The budget is one of iterations, never of time: the
 /// answer is the same on any machine under any load.
-class NumericalInverse final : public InverseKinematics {
+class NumericalInverse final : public LimitedInverse {
  public:
   NumericalInverse(const ForwardKinematics& forward, const JointLimits& limits, std::string why);
 
   [[nodiscard]] std::string family() const override;
-  [[nodiscard]] std::vector<JointVector> solve_all(const Pose& pose_base_tool) const override;
-  [[nodiscard]] JointVector solve_near(const Pose& pose_base_tool,
-                                       const JointVector& near) const override;
-  [[nodiscard]] std::vector<JointVector> solve_all(const Eigen::Vector3d& position) const override;
-  [[nodiscard]] JointVector solve_near(const Eigen::Vector3d& position,
-                                       const JointVector& near) const override;
-  [[nodiscard]] JointVector solve_near_unlimited(const Pose& pose_base_tool,
-                                                 const JointVector& near) const override;
+  [[nodiscard]] std::vector<JointVector> all(const InverseTask& task,
+                                             const JointVector& reference) const override;
+  [[nodiscard]] JointVector near(const InverseTask& task,
+                                 const JointVector& reference) const override;
+  [[nodiscard]] JointVector near_unlimited(const InverseTask& task,
+                                           const JointVector& reference) const override;
 
  private:
-  struct Task {
-    Pose goal;
-    bool position_only;
-  };
   /// Where one descent ended.
   struct Descent {
     JointVector q;
@@ -48,23 +40,18 @@ class NumericalInverse final : public InverseKinematics {
     JointVector nearest;               ///< where that was
   };
 
-  [[nodiscard]] PoseError error(const Task& task, const JointVector& q) const;
   /// @param patience steps without progress that end it
-  [[nodiscard]] Descent descend(const Task& task, JointVector q, bool bounded, int iterations,
-                                int patience) const;
+  [[nodiscard]] Descent descend(const InverseTask& task, JointVector q, bool bounded,
+                                int iterations, int patience) const;
   /// @param reference the turn nearest to it is kept; @param enough stop at so many branches
-  [[nodiscard]] Search search(const Task& task, const JointVector& reference, int starts,
+  [[nodiscard]] Search search(const InverseTask& task, const JointVector& reference, int starts,
                               size_t enough) const;
-  void add(const Task& task, const JointVector& branch, std::vector<JointVector>& branches) const;
+  void add(const InverseTask& task, const JointVector& branch,
+           std::vector<JointVector>& branches) const;
   [[nodiscard]] JointVector start(int index) const;
-  [[nodiscard]] std::vector<JointVector> all(const Task& task) const;
-  [[nodiscard]] JointVector near(const Task& task, const JointVector& near) const;
-  [[nodiscard]] bool redundant(const Task& task) const;
-  [[noreturn]] void refuse(const Task& task, const Search& search) const;
+  [[nodiscard]] bool redundant(const InverseTask& task) const;
+  [[noreturn]] void refuse(const InverseTask& task, const Search& search) const;
 
-  ForwardKinematics forward_;
-  JointLimits limits_;
-  JointTurns turns_;
   std::string why_;
   double length_ = 1.0;          ///< the arm's size [m], to weigh metres against radians
   std::array<bool, 6> moves_{};  ///< x, y, z, and turns about them: what the arm can move

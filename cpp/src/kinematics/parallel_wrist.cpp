@@ -52,15 +52,15 @@ std::string ParallelWrist::family() const {
   return "three parallel axes: 2, 3, 4, and axes 5, 6 meet in one point";
 }
 
-ClosedSolutions ParallelWrist::solve(const Pose& pose_base_tool, const JointVector& held) const {
-  const Pose pose_s_tool = pose_base_s_.inverse(Eigen::Isometry) * pose_base_tool;
+void ParallelWrist::solve(const InverseTask& task, const JointVector& held,
+                          ClosedSolutions& solutions) const {
+  const Pose pose_s_tool = pose_base_s_.inverse(Eigen::Isometry) * task.goal;
   const Eigen::Vector3d meeting = pose_s_tool * meeting_in_tool_;
   const Eigen::Vector3d y = Eigen::Vector3d::UnitY();
   const Eigen::Vector3d aside = axis5_.cross(y);
-  ClosedSolutions solutions;
-  double missing = 0.0;
-  for (const ShoulderBranch& shoulder :
-       turn_shoulder(meeting.x(), meeting.y(), side_, held[0], missing)) {
+  const ShoulderBranches shoulders = turn_shoulder(meeting.x(), meeting.y(), side_, held[0]);
+  double missing = shoulders.out_of_reach;
+  for (const ShoulderBranch& shoulder : shoulders) {
     // Without joint 1: R = Ry(S) R5 R6 with S = q2 ± q3 ± q4, and turns about y leave y as it is.
     const Eigen::Matrix3d rotation =
         about_z(-shoulder.q1) * pose_s_tool.linear() * rotation_s_tool_.transpose();
@@ -71,7 +71,6 @@ ClosedSolutions ParallelWrist::solve(const Pose& pose_base_tool, const JointVect
     for (const double theta : {bend, -bend}) {
       if (aligned && theta != bend) continue;
       const double q5 = theta - tilt_;
-      // y seen from the tool: Rᵀ y = R6ᵀ (R5ᵀ y).
       // y seen from the tool: Rᵀ y = R6ᵀ (R5ᵀ y). Both sides are taken across axis 6 before they
       // are compared: near the singularity they differ in the last digits only.
       const Eigen::Vector3d seen = axis6_.cross(rotation.transpose() * y);
@@ -96,29 +95,27 @@ ClosedSolutions ParallelWrist::solve(const Pose& pose_base_tool, const JointVect
         const double q2 = std::abs(target) < kOnAxis
                               ? held[1]
                               : std::arg(target) - std::arg(upper_) - std::arg(span);
-        ClosedBranch branch;
-        branch.q = JointVector(6);
+        ClosedBranch& branch = solutions.branches.add();
+        branch.q.resize(6);
         branch.q << shoulder.q1, q2, sign3_ * turn3, sign4_ * (sum - q2 - turn3), q5, q6;
-        solutions.branches.push_back(branch);
         if (elbow.angle == 0.0) break;  // stretched: both elbows are one
       }
     }
   }
   if (solutions.branches.empty()) solutions.out_of_reach = missing;
-  return solutions;
 }
 
-ArmSingularities ParallelWrist::singularities(const JointVector& q) const {
+ArmSides ParallelWrist::sides(const JointVector& q) const {
   const double turn3 = q[1] + sign3_ * q[2];
   const double turn4 = turn3 + sign4_ * q[3];
   const Planar meeting = shoulder_ + std::polar(1.0, q[1]) * upper_ +
                          std::polar(1.0, turn3) * fore_ + std::polar(1.0, turn4) * hand_;
-  ArmSingularities near;
-  near.length = std::abs(upper_) + std::abs(fore_);
-  near.shoulder = std::abs(meeting.imag());
-  near.elbow = from_half_turns(sign3_ * q[2] + std::arg(fore_) - std::arg(upper_));
-  near.wrist = from_half_turns(q[4] + tilt_);
-  return near;
+  ArmSides found;
+  found.length = std::abs(upper_) + std::abs(fore_);
+  found.shoulder = meeting.imag();
+  found.elbow = from_half_turns(sign3_ * q[2] + std::arg(fore_) - std::arg(upper_));
+  found.wrist = from_half_turns(q[4] + tilt_);
+  return found;
 }
 
 }  // namespace viapoint

@@ -20,9 +20,9 @@ class ParallelWrist final : public ClosedForm {
   [[nodiscard]] static std::optional<ParallelWrist> recognise(const ForwardKinematics& forward);
 
   [[nodiscard]] std::string family() const override;
-  [[nodiscard]] ClosedSolutions solve(const Pose& pose_base_tool,
-                                      const JointVector& held) const override;
-  [[nodiscard]] ArmSingularities singularities(const JointVector& q) const override;
+  void solve(const InverseTask& task, const JointVector& held,
+             ClosedSolutions& solutions) const override;
+  [[nodiscard]] ArmSides sides(const JointVector& q) const override;
 
  private:
   /// A point of the arm's plane as z + ix: a turn about y by θ multiplies it by e^{iθ}.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <vector>
 
 #include "kinematics/closed_form.hpp"
@@ -62,13 +64,17 @@ Singularity RobotModel::singularity(const JointVector& q) const {
   Singularity found;
   found.manipulability = manipulability(q);
   if (const auto arm = recognise_closed_form(forward_)) {
-    const ArmSingularities near = arm->singularities(q);
-    const std::array distances{near.shoulder / near.length, near.elbow, near.wrist};
+    const ArmSides near = arm->sides(q);
+    const auto size_of = [](const std::optional<double>& distance, double unit) {
+      return distance ? std::abs(*distance) / unit : std::numeric_limits<double>::infinity();
+    };
+    const std::array distances{size_of(near.shoulder, near.length), size_of(near.elbow, 1.0),
+                               size_of(near.wrist, 1.0)};
     const auto least = std::min_element(distances.begin(), distances.end());
     const std::array names{"shoulder", "elbow", "wrist"};
     const auto index = static_cast<size_t>(least - distances.begin());
     found.name = *least < kNearSingular ? names[index] : "none";
-    found.distance = index == 0 ? near.shoulder : *least;
+    found.distance = index == 0 ? *least * near.length : *least;
     return found;
   }
   JointVector travel = JointVector::Zero(joints());

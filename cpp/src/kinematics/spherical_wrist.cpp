@@ -58,15 +58,15 @@ Eigen::Matrix3d SphericalWrist::arm_rotation(const Eigen::Vector3d& arm) const {
   return about_z(arm[0]) * about_y(arm[1] + elbow_sign_ * arm[2]);
 }
 
-ClosedSolutions SphericalWrist::solve(const Pose& pose_base_tool, const JointVector& held) const {
-  const Pose pose_s_tool = pose_base_s_.inverse(Eigen::Isometry) * pose_base_tool;
+void SphericalWrist::solve(const InverseTask& task, const JointVector& held,
+                           ClosedSolutions& solutions) const {
+  const Pose pose_s_tool = pose_base_s_.inverse(Eigen::Isometry) * task.goal;
   const Eigen::Vector3d wrist = pose_s_tool * wrist_in_tool_;
-  ClosedSolutions solutions;
 
   // Joint 1 turns the arm's plane, which passes axis 1 at the distance |side|.
-  double missing = 0.0;
-  for (const ShoulderBranch& shoulder :
-       turn_shoulder(wrist.x(), wrist.y(), side_, held[0], missing)) {
+  const ShoulderBranches shoulders = turn_shoulder(wrist.x(), wrist.y(), side_, held[0]);
+  double missing = shoulders.out_of_reach;
+  for (const ShoulderBranch& shoulder : shoulders) {
     // Joints 2 and 3 are a planar arm in (z, x): turning about y by θ multiplies z + ix by e^{iθ}.
     const double ahead = shoulder.forward - shoulder_x_;
     const Elbow elbow = bend_elbow(upper_, fore_, std::hypot(ahead, wrist.z()));
@@ -88,11 +88,10 @@ ClosedSolutions SphericalWrist::solve(const Pose& pose_base_tool, const JointVec
     }
   }
   if (solutions.branches.empty()) solutions.out_of_reach = missing;
-  return solutions;
 }
 
 void SphericalWrist::solve_wrist(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& arm,
-                                 const JointVector& held, std::vector<ClosedBranch>& out) const {
+                                 const JointVector& held, BranchList& out) const {
   // What is left for the wrist, in its own frame: N = Rz(q4) Ry(q5 + tilt) Rz(q6).
   const Eigen::Matrix3d left =
       arm_rotation(arm).transpose() * rotation * rotation_s_tool_.transpose();
@@ -102,37 +101,38 @@ void SphericalWrist::solve_wrist(const Eigen::Matrix3d& rotation, const Eigen::V
 
   // With q4 known the other two follow without loss, however small the sine:
   // Rz(−q4) N = Ry(θ) Rz(q6), whose middle row is (sin q6, cos q6, 0).
-  const auto finish = [&](double q4) {
+  const auto finish = [&](double q4) -> ClosedBranch& {
     const double c = std::cos(q4);
     const double s = std::sin(q4);
-    ClosedBranch branch;
-    branch.q = JointVector(6);
+    ClosedBranch& branch = out.add();
+    branch.q.resize(6);
     branch.q << arm[0], arm[1], arm[2], q4, std::atan2(c * n(0, 2) + s * n(1, 2), n(2, 2)) - tilt_,
         std::atan2(c * n(1, 0) - s * n(0, 0), c * n(1, 1) - s * n(0, 1));
     return branch;
   };
   if (sine < kWristSine) {
-    ClosedBranch branch = finish(held[3]);
+    ClosedBranch& branch = finish(held[3]);
     branch.wrist_free = true;
+    branch.first = 3;
+    branch.second = 5;
     branch.wrist_sign = n(2, 2) > 0.0 ? 1.0 : -1.0;
     branch.wrist_sum = branch.q[3] + branch.wrist_sign * branch.q[5];
-    out.push_back(branch);
     return;
   }
   const double q4 = std::atan2(n(1, 2), n(0, 2));
-  out.push_back(finish(q4));
-  out.push_back(finish(q4 > 0.0 ? q4 - kPi : q4 + kPi));
+  finish(q4);
+  finish(q4 > 0.0 ? q4 - kPi : q4 + kPi);
 }
 
-ArmSingularities SphericalWrist::singularities(const JointVector& q) const {
-  ArmSingularities near;
-  near.length = upper_ + fore_;
+ArmSides SphericalWrist::sides(const JointVector& q) const {
   const double upper = upper_angle_ + q[1];
   const double fore = fore_angle_ + q[1] + elbow_sign_ * q[2];
-  near.shoulder = std::abs(shoulder_x_ + upper_ * std::sin(upper) + fore_ * std::sin(fore));
-  near.elbow = from_half_turns(fore - upper);
-  near.wrist = from_half_turns(q[4] + tilt_);
-  return near;
+  ArmSides found;
+  found.length = upper_ + fore_;
+  found.shoulder = shoulder_x_ + upper_ * std::sin(upper) + fore_ * std::sin(fore);
+  found.elbow = from_half_turns(fore - upper);
+  found.wrist = from_half_turns(q[4] + tilt_);
+  return found;
 }
 
 }  // namespace viapoint

@@ -8,7 +8,6 @@
 
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "kinematics/closed_form.hpp"
 
@@ -21,14 +20,14 @@ class SphericalWrist final : public ClosedForm {
   [[nodiscard]] static std::optional<SphericalWrist> recognise(const ForwardKinematics& forward);
 
   [[nodiscard]] std::string family() const override;
-  [[nodiscard]] ClosedSolutions solve(const Pose& pose_base_tool,
-                                      const JointVector& held) const override;
-  [[nodiscard]] ArmSingularities singularities(const JointVector& q) const override;
+  void solve(const InverseTask& task, const JointVector& held,
+             ClosedSolutions& solutions) const override;
+  [[nodiscard]] ArmSides sides(const JointVector& q) const override;
 
  private:
   SphericalWrist() = default;
   void solve_wrist(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& arm,
-                   const JointVector& held, std::vector<ClosedBranch>& out) const;
+                   const JointVector& held, BranchList& out) const;
   [[nodiscard]] Eigen::Matrix3d arm_rotation(const Eigen::Vector3d& arm) const;
 
   // Frame S: origin on axis 1 at the height of axis 2, z along axis 1, y along axis 2.

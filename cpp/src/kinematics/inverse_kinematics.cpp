@@ -1,0 +1,43 @@
+#include "viapoint/kinematics/inverse_kinematics.hpp"
+
+#include <algorithm>
+
+#include "viapoint/core/error.hpp"
+
+namespace viapoint {
+
+std::vector<JointVector> InverseKinematics::solve_all(const Pose& pose_base_tool) const {
+  return solve_all(pose_base_tool, JointVector::Zero(joints()));
+}
+
+std::vector<JointVector> InverseKinematics::solve_all(const Eigen::Vector3d& position) const {
+  return solve_all(position, JointVector::Zero(joints()));
+}
+
+std::vector<JointVector> InverseKinematics::solve_all(const Pose& pose_base_tool,
+                                                      const JointVector& reference,
+                                                      const Configuration& wish) const {
+  std::vector<JointVector> all = solve_all(pose_base_tool, reference);
+  std::vector<std::string> others;
+  std::erase_if(all, [&](const JointVector& q) {
+    const Configuration found = configuration(q);
+    if (found.fits(wish)) return false;
+    others.push_back(found.describe());
+    return true;
+  });
+  if (!all.empty()) return all;
+  constexpr size_t kMostNamed = 8;
+  std::sort(others.begin(), others.end());
+  others.erase(std::unique(others.begin(), others.end()), others.end());
+  std::string list;
+  for (size_t i = 0; i < std::min(others.size(), kMostNamed); ++i) {
+    list += (list.empty() ? "" : "; ") + others[i];
+  }
+  if (others.size() > kMostNamed) list += "; and others";
+  throw MotionError(ErrorCode::kOutsideLimits,
+                    "no solution within the joint limits has the configuration " + wish.describe() +
+                        "; there are: " + list,
+                    {"ask for one of these", "leave the configuration open and give near joints"});
+}
+
+}  // namespace viapoint
