@@ -29,6 +29,7 @@ __all__ = [
     "BranchChangeError",
     "BusyError",
     "CouplingLimitError",
+    "DegenerateCurveError",
     "DiscontinuousError",
     "DriveFaultError",
     "EmptyProgramError",
@@ -264,6 +265,12 @@ class HalfTurnError(PoseError):
     """Two orientations half a turn apart: the least rotation has two ways."""
 
     code = "half_turn"
+
+
+class DegenerateCurveError(PoseError):
+    """Points that define no curve (those of an arc on one line), or a curve with a cusp."""
+
+    code = "degenerate_curve"
 
 
 class PoseCorrectedError(PoseError):

@@ -1,5 +1,7 @@
 #include "path/chain_bounds.hpp"
 
+#include <algorithm>
+
 namespace viapoint {
 
 JointSuprema joint_suprema(const JointPiece& piece, const PathPoint& at, double middle,
@@ -16,6 +18,34 @@ JointSuprema joint_suprema(const JointPiece& piece, const PathPoint& at, double 
   sup.q2 = at.q2.cwiseAbs() + half * sup.q3;
   sup.q1 = at.q1.cwiseAbs() + half * sup.q2;
   return sup;
+}
+
+JointSuprema suprema_over(const JointPath& path, double s0, double s1) {
+  JointSuprema sup;
+  const size_t last = path.piece_at(s1);
+  for (size_t k = path.piece_at(s0); k <= last; ++k) {
+    const JointPiece& piece = path.pieces()[k];
+    const double from = std::clamp(s0 - path.start_of(k), 0.0, piece.length);
+    const double to = std::clamp(s1 - path.start_of(k), 0.0, piece.length);
+    const double middle = 0.5 * (from + to);
+    const JointSuprema here = joint_suprema(piece, piece.at(middle), middle, 0.5 * (to - from));
+    if (sup.q1.size() == 0) {
+      sup = here;
+    } else {
+      sup.q1 = sup.q1.cwiseMax(here.q1);
+      sup.q2 = sup.q2.cwiseMax(here.q2);
+      sup.q3 = sup.q3.cwiseMax(here.q3);
+    }
+  }
+  return sup;
+}
+
+double last_start_within(const JointPath& path, double s0, double s1) {
+  size_t k = path.piece_at(s1);
+  // s1 may be a knot itself: then the piece begins there.
+  if (path.start_of(k) >= s1 && k > 0) --k;
+  const double start = path.start_of(k);
+  return start > s0 && start < s1 ? start : s1;
 }
 
 JointVector reach_over(const ForwardKinematics& arm, const JointPiece& piece) {

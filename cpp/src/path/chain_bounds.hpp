@@ -39,6 +39,12 @@ struct JointSuprema {
 [[nodiscard]] JointSuprema joint_suprema(const JointPiece& piece, const PathPoint& at,
                                          double middle, double half);
 
+/// The same over [s0, s1] of a path, whatever pieces lie there. Real-time: safe.
+[[nodiscard]] JointSuprema suprema_over(const JointPath& path, double s0, double s1);
+
+/// The last start of a piece inside (s0, s1); s1 where there is none.
+[[nodiscard]] double last_start_within(const JointPath& path, double s0, double s1);
+
 /// Reach bounds R_i of the chain over the joint positions of the piece (n,) [m].
 [[nodiscard]] JointVector reach_over(const ForwardKinematics& arm, const JointPiece& piece);
 

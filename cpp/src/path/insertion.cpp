@@ -106,7 +106,10 @@ class Marcher {
     while (s_ < length) {
       // The rest in equal steps, so that no stub is left at the end.
       const double steps = std::ceil((length - s_) / step_ * (1.0 - 1e-9));
-      const double next = steps <= 1.0 ? length : s_ + (length - s_) / steps;
+      const double even = steps <= 1.0 ? length : s_ + (length - s_) / steps;
+      // A piece across a jump of the curve's third derivative would have to be short: end there,
+      // unless that makes a stub.
+      const double next = curve_.last_break(0.5 * (s_ + even), even);
       // Written so that NaN fails.
       if (!(next - s_ >= kShortestStep * length || next >= length)) fail();
       if (!advance(next)) continue;

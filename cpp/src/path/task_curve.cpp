@@ -1,5 +1,6 @@
 #include "viapoint/path/task_curve.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "viapoint/core/units.hpp"
@@ -13,6 +14,26 @@ constexpr double kTravelFloor = 1e-9;
 constexpr double kHalfTurnSlack = 1e-9;
 
 }  // namespace
+
+double TaskCurve::last_break(double /*s0*/, double s1) const { return s1; }
+
+CurvePoint ToolCurve::at(double s) const {
+  const PositionPoint where = position_->at(s);
+  const OrientationPoint turn = orientation_->at(s);
+  return {where.p, where.p1, where.p2, where.p3, turn.rotation, turn.w, turn.w1, turn.w2};
+}
+
+CurveBounds ToolCurve::bounds(double s0, double s1) const {
+  const OrientationBounds turn = orientation_->bounds(s0, s1);
+  return {position_->third_bound(s0, s1), turn.w, turn.w1, turn.w2};
+}
+
+double ToolCurve::last_break(double s0, double s1) const {
+  const double of_position = position_->last_break(s0, s1);
+  const double of_turn = orientation_->last_break(s0, s1);
+  if (of_position >= s1) return of_turn;
+  return of_turn >= s1 ? of_position : std::max(of_position, of_turn);
+}
 
 LineCurve::LineCurve(const Pose& from, const Pose& to)
     : from_(from.translation()),

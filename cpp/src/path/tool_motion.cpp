@@ -57,7 +57,7 @@ LocalMotion PathMotion::over(double middle, double half) const {
   const JointSuprema s_sup = joint_suprema(s_of_u_, s, middle, half);
   const double s0 = s_of_u_.at(middle - half).q[0];
   const double s1 = s_of_u_.at(middle + half).q[0];
-  const JointSuprema sup = suprema(std::min(s0, s1), std::max(s0, s1));
+  const JointSuprema sup = suprema_over(path_, std::min(s0, s1), std::max(s0, s1));
   const PathPoint q = path_.at(s.q[0]);
   const double d1 = s.q1[0];
   const double d2 = s.q2[0];
@@ -73,26 +73,6 @@ LocalMotion PathMotion::over(double middle, double half) const {
   local.sup.q2 = b1 * b1 * sup.q2 + b2 * sup.q1;
   local.sup.q3 = b1 * b1 * b1 * sup.q3 + 3.0 * b1 * b2 * sup.q2 + b3 * sup.q1;
   return local;
-}
-
-JointSuprema PathMotion::suprema(double s0, double s1) const {
-  JointSuprema sup;
-  const size_t last = path_.piece_at(s1);
-  for (size_t k = path_.piece_at(s0); k <= last; ++k) {
-    const JointPiece& piece = path_.pieces()[k];
-    const double from = std::clamp(s0 - path_.start_of(k), 0.0, piece.length);
-    const double to = std::clamp(s1 - path_.start_of(k), 0.0, piece.length);
-    const double middle = 0.5 * (from + to);
-    const JointSuprema here = joint_suprema(piece, piece.at(middle), middle, 0.5 * (to - from));
-    if (sup.q1.size() == 0) {
-      sup = here;
-    } else {
-      sup.q1 = sup.q1.cwiseMax(here.q1);
-      sup.q2 = sup.q2.cwiseMax(here.q2);
-      sup.q3 = sup.q3.cwiseMax(here.q3);
-    }
-  }
-  return sup;
 }
 
 RestMotion::RestMotion(const JointVector& q) {

@@ -48,8 +48,6 @@ class PathMotion final : public JointMotion {
   [[nodiscard]] LocalMotion over(double middle, double half) const override;
 
  private:
-  [[nodiscard]] JointSuprema suprema(double s0, double s1) const;
-
   const JointPath& path_;
   JointPiece s_of_u_;  ///< one column
 };

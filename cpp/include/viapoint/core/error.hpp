@@ -30,6 +30,7 @@ enum class ErrorCode {
   kBranchChange,       ///< start and goal are reachable only on different branches
   kUncontrolled,       ///< the arm has too few joints to hold every coordinate asked for
   kHalfTurn,           ///< orientations 180° apart: the least rotation is not unique
+  kDegenerateCurve,    ///< points that define no curve (an arc's on one line), or one with a cusp
   kZeroLength,         ///< a move that goes nowhere (warning: it is left out)
   kZoneShrunk,         ///< a zone larger than its legs allow (warning)
   kZoneIsStop,         ///< a corner where stopping is quicker, or a near reversal (warning)

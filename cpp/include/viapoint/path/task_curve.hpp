@@ -3,7 +3,12 @@
 /// Cartesian move asks for; insertion turns it into joint pieces.
 #pragma once
 
+#include <memory>
+#include <utility>
+
 #include "viapoint/core/pose.hpp"
+#include "viapoint/path/orientation_curve.hpp"
+#include "viapoint/path/position_curve.hpp"
 
 namespace viapoint {
 
@@ -33,6 +38,26 @@ class TaskCurve {
   [[nodiscard]] virtual CurvePoint at(double s) const = 0;
   /// Bounds that hold for every s in [s0, s1].
   [[nodiscard]] virtual CurveBounds bounds(double s0, double s1) const = 0;
+  /// The last place in (s0, s1) where p''' or w'' may jump; s1 where there is none. Pieces that end
+  /// there can be longer.
+  [[nodiscard]] virtual double last_break(double s0, double s1) const;
+};
+
+/// Any way of the tool point with any way of turning, over one parameter.
+class ToolCurve final : public TaskCurve {
+ public:
+  ToolCurve(std::unique_ptr<const PositionCurve> position,
+            std::unique_ptr<const OrientationCurve> orientation)
+      : position_(std::move(position)), orientation_(std::move(orientation)) {}
+
+  [[nodiscard]] double length() const override { return position_->length(); }
+  [[nodiscard]] CurvePoint at(double s) const override;
+  [[nodiscard]] CurveBounds bounds(double s0, double s1) const override;
+  [[nodiscard]] double last_break(double s0, double s1) const override;
+
+ private:
+  std::unique_ptr<const PositionCurve> position_;
+  std::unique_ptr<const OrientationCurve> orientation_;
 };
 
 /// Straight line with a constant rotation rate about one axis (least rotation between the ends).
