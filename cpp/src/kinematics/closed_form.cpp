@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kinematics/decomposed_arm.hpp"
 #include "kinematics/parallel_wrist.hpp"
 #include "kinematics/spherical_wrist.hpp"
 #include "viapoint/core/units.hpp"
@@ -14,6 +15,9 @@ std::unique_ptr<const ClosedForm> recognise_closed_form(const ForwardKinematics&
     return std::make_unique<SphericalWrist>(*arm);
   }
   if (auto arm = ParallelWrist::recognise(forward)) return std::make_unique<ParallelWrist>(*arm);
+  if (auto arm = DecomposedArm::recognise(forward)) {
+    return std::make_unique<DecomposedArm>(*std::move(arm));
+  }
   return nullptr;
 }
 

@@ -13,6 +13,14 @@
 
 namespace viapoint {
 
+/// Signed distances from the singularities: each sign is one side of the configuration.
+struct ArmSides {
+  std::optional<double> shoulder;  ///< wrist to the plane of axis 1 parallel to axis 2 [m]
+  std::optional<double> elbow;     ///< elbow from stretched or folded [rad]
+  std::optional<double> wrist;     ///< wrist from the alignment of its axes [rad]
+  double length = 1.0;             ///< the arm's length, to compare metres with radians [m]
+};
+
 /// One family of solutions, whole turns left aside.
 struct ClosedBranch {
   JointVector q;
@@ -23,6 +31,7 @@ struct ClosedBranch {
   int second = 0;
   double wrist_sum = 0.0;
   double wrist_sign = 1.0;
+  ArmSides sides;  ///< of arms that have no formula for them
 };
 
 /// At most kMostBranches branches in a fixed place: no heap.
@@ -62,14 +71,6 @@ struct ClosedSolutions {
   double out_of_reach = 0.0;  ///< how far the wrist is out of reach [m]; 0 when it is not
   /// A joint was held at a singular pose, and another value of it might do better.
   bool held = false;
-};
-
-/// Signed distances from the singularities: each sign is one side of the configuration.
-struct ArmSides {
-  std::optional<double> shoulder;  ///< wrist to the plane of axis 1 parallel to axis 2 [m]
-  std::optional<double> elbow;     ///< elbow from stretched or folded [rad]
-  std::optional<double> wrist;     ///< wrist from the alignment of its axes [rad]
-  double length = 1.0;             ///< the arm's length, to compare metres with radians [m]
 };
 
 /// The geometry of one kind of arm, read off its chain at q = 0. Immutable. Real-time: solve() is

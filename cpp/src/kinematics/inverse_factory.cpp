@@ -13,9 +13,9 @@ std::unique_ptr<const InverseKinematics> make_inverse(const ForwardKinematics& f
   if (auto form = recognise_closed_form(forward)) {
     return std::make_unique<ClosedFormInverse>(forward, limits, std::move(form));
   }
-  const std::string why = forward.joints() == 6
-                              ? "neither a spherical wrist nor three parallel axes"
-                              : std::to_string(forward.joints()) + " joints";
+  const std::string why =
+      forward.joints() == 6 ? "no three axes that meet in one point or, in the middle, are parallel"
+                            : std::to_string(forward.joints()) + " joints";
   return std::make_unique<NumericalInverse>(forward, limits, why);
 }
 

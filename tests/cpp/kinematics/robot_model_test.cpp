@@ -158,10 +158,24 @@ TEST(RobotModel, SingularityDistanceVanishesWithTheDeterminant) {
   }
 }
 
-TEST(RobotModel, CallsAStretchedGeneralArmNearItsBoundary) {
+TEST(RobotModel, NamesTheElbowOfAPlanarArmAndHowNearItIs) {
   const RobotPtr robot = arm("two_link");
-  EXPECT_EQ(robot->singularity(Eigen::Vector2d(0.3, 1e-4)).name, "boundary");
+  EXPECT_EQ(robot->singularity(Eigen::Vector2d(0.3, 1e-4)).name, "elbow");
+  EXPECT_NEAR(robot->singularity(Eigen::Vector2d(0.3, 1e-4)).distance, 1e-4, 1e-9);
   EXPECT_EQ(robot->singularity(Eigen::Vector2d(0.3, 1.2)).name, "none");
+  EXPECT_NEAR(robot->singularity(Eigen::Vector2d(0.3, 1.2)).distance, 1.2, 1e-9);
+}
+
+TEST(RobotModel, CallsAGeneralArmNearItsBoundary) {
+  // A PUMA out of true by 0.1 mm has no closed form: its smallest singular value tells.
+  RobotDescription description = load_description(VIAPOINT_TEST_ROBOTS "/puma560.yaml");
+  description.chain[4].before.translation().x() += 1e-4;
+  const RobotPtr robot = RobotModel::make(description);
+  JointVector q(6);
+  q << 0.3, -0.4, 0.5, 0.6, 1e-4, 0.2;
+  EXPECT_EQ(robot->singularity(q).name, "boundary");
+  q[4] = 1.0;
+  EXPECT_EQ(robot->singularity(q).name, "none");
 }
 
 TEST(RobotModel, FingerprintFollowsWhatMovesAlike) {
