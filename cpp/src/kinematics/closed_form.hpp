@@ -39,6 +39,8 @@ class BranchList {
  public:
   [[nodiscard]] int size() const { return size_; }
   [[nodiscard]] bool empty() const { return size_ == 0; }
+  [[nodiscard]] ClosedBranch* begin() { return items_.data(); }
+  [[nodiscard]] ClosedBranch* end() { return items_.data() + size_; }
   [[nodiscard]] const ClosedBranch* begin() const { return items_.data(); }
   [[nodiscard]] const ClosedBranch* end() const { return items_.data() + size_; }
   /// A new branch at the end; the last one is taken again when the list is full.

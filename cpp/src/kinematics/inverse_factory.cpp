@@ -5,6 +5,7 @@
 
 #include "kinematics/closed_form_inverse.hpp"
 #include "kinematics/numerical_inverse.hpp"
+#include "kinematics/redundant_inverse.hpp"
 
 namespace viapoint {
 
@@ -12,6 +13,9 @@ std::unique_ptr<const InverseKinematics> make_inverse(const ForwardKinematics& f
                                                       const JointLimits& limits) {
   if (auto form = recognise_closed_form(forward)) {
     return std::make_unique<ClosedFormInverse>(forward, limits, std::move(form));
+  }
+  if (auto form = recognise_redundant_form(forward)) {
+    return std::make_unique<RedundantInverse>(forward, limits, std::move(form));
   }
   const std::string why =
       forward.joints() == 6 ? "no three axes that meet in one point or, in the middle, are parallel"

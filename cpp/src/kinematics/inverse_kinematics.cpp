@@ -5,6 +5,22 @@
 #include "viapoint/core/error.hpp"
 
 namespace viapoint {
+namespace {
+
+[[noreturn]] void refuse_redundancy(const std::string& family) {
+  throw MotionError(ErrorCode::kUncontrolled,
+                    "this arm leaves nothing open once the pose is given (" + family + ")",
+                    {"ask without a redundancy"});
+}
+
+}  // namespace
+
+double InverseKinematics::redundancy_of(const JointVector&) const { refuse_redundancy(family()); }
+
+std::vector<JointVector> InverseKinematics::solve_all_at(const Pose&, double,
+                                                         const JointVector&) const {
+  refuse_redundancy(family());
+}
 
 std::vector<JointVector> InverseKinematics::solve_all(const Pose& pose_base_tool) const {
   return solve_all(pose_base_tool, JointVector::Zero(joints()));

@@ -227,6 +227,13 @@ JointVector NumericalInverse::near(const InverseTask& task, const JointVector& r
   return found.inside.front();
 }
 
+std::optional<JointVector> NumericalInverse::follow(const InverseTask& task,
+                                                    const JointVector& reference) const {
+  const Descent end = descend(task, reference, true, kIterations, kPatience);
+  if (!end.error.within(kPoseTolerance) || !limits_.contains(end.q)) return std::nullopt;
+  return end.q;
+}
+
 void NumericalInverse::refuse(const InverseTask& task, const Search& search_result) const {
   if (!search_result.outside.empty()) {
     refuse_outside_limits(forward_, turns_, search_result.outside);

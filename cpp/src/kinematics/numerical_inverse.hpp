@@ -25,6 +25,9 @@ class NumericalInverse final : public LimitedInverse {
                                  const JointVector& reference) const override;
   [[nodiscard]] JointVector near_unlimited(const InverseTask& task,
                                            const JointVector& reference) const override;
+  /// Where one descent from `reference`, within the limits all the way, arrives, if it does.
+  [[nodiscard]] std::optional<JointVector> follow(const InverseTask& task,
+                                                  const JointVector& reference) const;
 
  private:
   /// Where one descent ended.

@@ -11,7 +11,8 @@
 
 namespace viapoint {
 
-inline constexpr const char* kArms[] = {"puma560", "two_link", "rpp", "scara", "ur5e", "panda"};
+inline constexpr const char* kArms[] = {"puma560", "two_link", "rpp",   "scara",
+                                        "ur5e",    "panda",    "iiwa14"};
 
 inline RobotPtr arm(const std::string& name) {
   return RobotModel::make(

@@ -81,7 +81,7 @@ std::vector<Sample> samples() {
                {0, 0, kRight},
                {0.1, 0, 0}},
               tool),
-       4},
+       2},
       {"polar with a wrist (Stanford)",
        dh_arm("RRPRRR",
               {{0.4, 0, -kRight},

@@ -287,7 +287,8 @@ TEST(LoadDescription, ListsTheBuiltInsForAnUnknownName) {
 }
 
 TEST(LoadDescription, KnowsItsBuiltIns) {
-  const std::vector<std::string> expected{"panda", "puma560", "rpp", "scara", "two_link", "ur5e"};
+  const std::vector<std::string> expected{"iiwa14", "panda",    "puma560", "rpp",
+                                          "scara",  "two_link", "ur5e"};
   EXPECT_EQ(builtin_robots(), expected);
   for (const std::string& name : expected) EXPECT_EQ(load_description(name).name, name);
 }

@@ -284,7 +284,9 @@ TEST(InverseKinematics, AShortArmRefusesAPoseItCannotHold) {
 TEST(InverseKinematics, SaysWhichFamilySolves) {
   EXPECT_NE(arm("puma560")->inverse().family().find("spherical wrist"), std::string::npos);
   EXPECT_NE(arm("ur5e")->inverse().family().find("three parallel axes"), std::string::npos);
-  EXPECT_NE(arm("panda")->inverse().family().find("7 joints"), std::string::npos);
+  EXPECT_NE(arm("iiwa14")->inverse().family().find("arm angle"), std::string::npos);
+  EXPECT_NE(arm("scara")->inverse().family().find("RRPR"), std::string::npos);
+  EXPECT_NE(arm("panda")->inverse().family().find("joint 7 as the parameter"), std::string::npos);
 }
 
 }  // namespace

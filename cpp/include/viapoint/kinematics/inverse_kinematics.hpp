@@ -54,6 +54,17 @@ class InverseKinematics {
   /// @throws MotionError(kBadArgument)
   [[nodiscard]] virtual Configuration configuration(const JointVector& q) const = 0;
 
+  /// What an arm of seven joints leaves open once the pose is given, "arm angle" or "joint 7";
+  /// empty for all others.
+  [[nodiscard]] virtual std::string redundancy() const { return {}; }
+  /// Its value at q [rad]. @throws MotionError(kUncontrolled) for arms that leave nothing open
+  [[nodiscard]] virtual double redundancy_of(const JointVector& q) const;
+  /// Every solution within the limits with this value of it [rad], nearest to `reference` first.
+  /// @throws MotionError as solve_all(), and kUncontrolled for arms that leave nothing open
+  [[nodiscard]] virtual std::vector<JointVector> solve_all_at(const Pose& pose_base_tool,
+                                                              double redundancy,
+                                                              const JointVector& reference) const;
+
   /// As above, nearest to zero first.
   [[nodiscard]] std::vector<JointVector> solve_all(const Pose& pose_base_tool) const;
   [[nodiscard]] std::vector<JointVector> solve_all(const Eigen::Vector3d& position) const;

@@ -1,0 +1,250 @@
+#include "kinematics/redundant_inverse.hpp"
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+#include <utility>
+
+namespace viapoint {
+namespace {
+
+constexpr double kNone = 1e300;
+constexpr double kNearEnough = 0.35;  ///< a change of every joint below this is near [rad]
+constexpr int kScan = 48;             ///< parameters of a first look
+constexpr int kFineScan = 1024;       ///< of a second one, where the first found nothing
+constexpr int kRefinements = 10;
+constexpr int kHalvings = 40;
+/// Within this share of its range from a limit a joint is crowded, and at the limit that counts as
+/// much as a move of half a radian.
+constexpr double kCrowded = 0.05;
+constexpr double kCrowdingCost = 0.25;
+
+}  // namespace
+
+RedundantInverse::RedundantInverse(const ForwardKinematics& forward, const JointLimits& limits,
+                                   std::unique_ptr<const RedundantForm> form)
+    : BranchInverse(forward, limits), form_(std::move(form)) {}
+
+Configuration RedundantInverse::sides(const JointVector& q) const {
+  return configuration_of(form_->sides(q));
+}
+
+double RedundantInverse::redundancy_of(const JointVector& q) const {
+  require_joints(q, joints(), "q");
+  return form_->parameter_of(q);
+}
+
+std::vector<JointVector> RedundantInverse::solve_all_at(const Pose& pose_base_tool,
+                                                        double redundancy,
+                                                        const JointVector& reference) const {
+  require_pose(pose_base_tool);
+  require_joints(reference, joints(), "reference");
+  const InverseTask task(pose_base_tool);
+  ClosedSolutions found;
+  form_->solve(pose_base_tool, redundancy, reference, found);
+  keep_confirmed(task, found);
+  if (found.branches.empty()) {
+    refuse_unreachable("the pose with this " + form_->parameter(), found.out_of_reach);
+  }
+  std::vector<JointVector> solutions;
+  std::vector<JointVector> refused;
+  for (const ClosedBranch& branch : found.branches) {
+    each_share(branch, reference, [&](const JointVector& candidate) {
+      const std::vector<JointVector> turned = turns_.all(candidate, reference);
+      if (turned.empty()) refused.push_back(candidate);
+      for (const JointVector& q : turned) {
+        if (confirmed(task, q)) solutions.push_back(q);
+      }
+    });
+  }
+  if (solutions.empty()) refuse_outside_limits(forward_, turns_, refused);
+  std::sort(solutions.begin(), solutions.end(),
+            [&](const auto& a, const auto& b) { return is_nearer(a, b, reference); });
+  return solutions;
+}
+
+double RedundantInverse::margin(const JointVector& q) const {
+  double least = 0.5;
+  for (int i = 0; i < q.size(); ++i) {
+    const double width = limits_.position_max[i] - limits_.position_min[i];
+    if (!std::isfinite(width)) continue;
+    const double room = std::min(q[i] - limits_.position_min[i], limits_.position_max[i] - q[i]);
+    least = std::min(least, room / width);
+  }
+  return least;
+}
+
+double RedundantInverse::crowding(const JointVector& q) const {
+  const double share = std::max(0.0, 1.0 - margin(q) / kCrowded);
+  return kCrowdingCost * share * share;
+}
+
+RedundantInverse::Choice RedundantInverse::choose(const InverseTask& task, double parameter,
+                                                  const JointVector& reference,
+                                                  const Cost& cost) const {
+  Choice best;
+  best.parameter = parameter;
+  ClosedSolutions found;
+  form_->solve(task.goal, parameter, reference, found);
+  for (const ClosedBranch& branch : found.branches) {
+    each_share(branch, reference, [&](const JointVector& candidate) {
+      const auto q = turns_.nearest(candidate, reference);
+      if (!q) return;
+      const double price = cost(*q);
+      if (price >= best.cost || !confirmed(task, *q)) return;
+      best.q = *q;
+      best.cost = price;
+    });
+  }
+  return best;
+}
+
+RedundantInverse::Choice RedundantInverse::refine(const InverseTask& task, Choice best, double half,
+                                                  const JointVector& reference,
+                                                  const Cost& cost) const {
+  // Golden section (Kiefer 1953); a parameter without a solution counts as infinitely dear.
+  constexpr double kGolden = 0.6180339887498949;
+  const auto [least, most] = form_->range(limits_);
+  double low = std::max(best.parameter - half, least);
+  double high = std::min(best.parameter + half, most);
+  const auto look = [&](double parameter) {
+    const Choice found = choose(task, parameter, reference, cost);
+    if (found.cost < best.cost) best = found;
+    return found.cost;
+  };
+  double left = high - kGolden * (high - low);
+  double right = low + kGolden * (high - low);
+  double at_left = look(left);
+  double at_right = look(right);
+  for (int i = 0; i < kRefinements; ++i) {
+    // On a tie, as of two that have no solution, keep the side of the best.
+    const bool go_left = at_left != at_right ? at_left < at_right : best.parameter < right;
+    if (go_left) {
+      high = right;
+      right = left;
+      at_right = at_left;
+      left = high - kGolden * (high - low);
+      at_left = look(left);
+    } else {
+      low = left;
+      left = right;
+      at_left = at_right;
+      right = low + kGolden * (high - low);
+      at_right = look(right);
+    }
+  }
+  return best;
+}
+
+RedundantInverse::Choice RedundantInverse::scan(const InverseTask& task, int count,
+                                                const JointVector& reference,
+                                                const Cost& cost) const {
+  const auto [low, high] = form_->range(limits_);
+  const double step = (high - low) / count;
+  Choice best;
+  for (int i = 0; i <= count; ++i) {
+    Choice found = choose(task, low + step * i, reference, cost);
+    if (found.cost < best.cost) best = std::move(found);
+  }
+  return best.cost < kNone ? refine(task, best, step, reference, cost) : best;
+}
+
+JointVector RedundantInverse::near(const InverseTask& task, const JointVector& reference) const {
+  if (task.position_only) return numerical_.near(task, reference);
+  // Near the reference the least motion is what least squares take from there; the parameter alone
+  // is no guide where it hardly moves a joint, or moves some without end (shoulder in line).
+  const auto followed = numerical_.follow(task, reference);
+  if (followed && (*followed - reference).lpNorm<Eigen::Infinity>() < kNearEnough) {
+    return *followed;
+  }
+  const Cost far = [&](const JointVector& q) {
+    return (q - reference).squaredNorm() + crowding(q);
+  };
+  Choice best;
+  if (followed) {
+    best.q = *followed;
+    best.cost = far(best.q);
+  }
+  for (const int count : {kScan, kFineScan}) {
+    const Choice found = scan(task, count, reference, far);
+    if (found.cost < best.cost) best = found;
+    if (best.cost < kNone) return best.q;
+  }
+  const double missing = least_missing(task, reference);
+  if (missing > kPoseTolerance) refuse_unreachable("the wrist at this pose", missing);
+  // The search may know a parameter between those looked at, and says what is wrong.
+  return numerical_.near(task, reference);
+}
+
+double RedundantInverse::least_missing(const InverseTask& task,
+                                       const JointVector& reference) const {
+  const auto missing_at = [&](double parameter) {
+    ClosedSolutions found;
+    form_->solve(task.goal, parameter, reference, found);
+    return found.branches.empty() ? found.out_of_reach : 0.0;
+  };
+  const auto [low, high] = form_->range(limits_);
+  double least = kNone;
+  double where = low;
+  for (int i = 0; i <= kScan; ++i) {
+    const double parameter = low + (high - low) * i / kScan;
+    const double missing = missing_at(parameter);
+    if (missing < least) where = parameter;
+    least = std::min(least, missing);
+    if (least == 0.0) return 0.0;
+  }
+  double half = (high - low) / kScan;
+  for (int i = 0; i < kHalvings; ++i, half *= 0.5) {
+    for (const double parameter : {where - 0.5 * half, where + 0.5 * half}) {
+      const double missing = missing_at(parameter);
+      if (missing < least) where = parameter;
+      least = std::min(least, missing);
+    }
+  }
+  return least;
+}
+
+std::vector<JointVector> RedundantInverse::all(const InverseTask& task,
+                                               const JointVector& reference) const {
+  if (task.position_only) return numerical_.all(task, reference);
+  std::map<std::tuple<int, int, int>, std::pair<double, JointVector>> roomiest;
+  const auto [low, high] = form_->range(limits_);
+  for (const int count : {kScan, kFineScan}) {
+    for (int i = 0; i <= count; ++i) {
+      ClosedSolutions found;
+      form_->solve(task.goal, low + (high - low) * i / count, reference, found);
+      for (const ClosedBranch& branch : found.branches) {
+        const auto q = nearest(task, branch.q, reference);
+        if (!q) continue;
+        const Configuration side = configuration_of(branch.sides);
+        const auto key = std::tuple(side.shoulder, side.elbow, side.wrist);
+        const double room = margin(*q);
+        const auto known = roomiest.find(key);
+        if (known != roomiest.end() && known->second.first >= room) continue;
+        if (confirmed(task, *q)) roomiest[key] = {room, *q};
+      }
+    }
+    if (!roomiest.empty()) break;
+  }
+  if (roomiest.empty()) {
+    const double missing = least_missing(task, reference);
+    if (missing > kPoseTolerance) refuse_unreachable("the wrist at this pose", missing);
+    return numerical_.all(task, reference);
+  }
+  std::vector<JointVector> solutions;
+  for (const auto& [key, entry] : roomiest) {
+    for (const JointVector& q : turns_.all(entry.second, reference)) {
+      if (confirmed(task, q)) solutions.push_back(q);
+    }
+  }
+  std::sort(solutions.begin(), solutions.end(),
+            [&](const auto& a, const auto& b) { return is_nearer(a, b, reference); });
+  return solutions;
+}
+
+JointVector RedundantInverse::near_unlimited(const InverseTask& task,
+                                             const JointVector& reference) const {
+  return numerical_.near_unlimited(task, reference);
+}
+
+}  // namespace viapoint
