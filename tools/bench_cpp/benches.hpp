@@ -10,5 +10,8 @@ void bench_tick(int ticks);
 void bench_plan(int programs);
 /// Time of the certificate a piece. @param programs whose motions are certified
 void bench_certificate(int programs);
+/// Random walks in joint space, corners rounded: how much of the time of stopping at every point is
+/// left, and what planning costs a point. @param paths to plan a case
+void bench_walk(int paths);
 
 }  // namespace viapoint::bench

@@ -8,11 +8,13 @@
 namespace {
 
 constexpr std::string_view kUsage =
-    "usage: viapoint-bench tick [TICKS] | plan [PROGRAMS] | certificate [PROGRAMS] | all\n"
+    "usage: viapoint-bench tick [TICKS] | plan [PROGRAMS] | certificate [PROGRAMS] |\n"
+    "                      walk [PATHS] | all\n"
     "Prints one JSON object a line; times as its keys say.\n";
 
 constexpr int kTicks = 1'000'000;
 constexpr int kPrograms = 100;
+constexpr int kPaths = 20;
 
 int count_of(int argc, char** argv, int otherwise) {
   if (argc < 3) return otherwise;
@@ -22,12 +24,17 @@ int count_of(int argc, char** argv, int otherwise) {
   return error == std::errc{} && end == text.data() + text.size() ? count : 0;
 }
 
+int default_count(std::string_view command) {
+  if (command == "tick") return kTicks;
+  return command == "walk" ? kPaths : kPrograms;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   using namespace viapoint::bench;
   const std::string_view command = argc > 1 ? argv[1] : "";
-  const int count = count_of(argc, argv, command == "tick" ? kTicks : kPrograms);
+  const int count = count_of(argc, argv, default_count(command));
   if (argc > 3 || count < 1) {
     std::cerr << kUsage;
     return 2;
@@ -39,10 +46,13 @@ int main(int argc, char** argv) {
       bench_plan(count);
     } else if (command == "certificate") {
       bench_certificate(count);
+    } else if (command == "walk") {
+      bench_walk(count);
     } else if (command == "all" && argc == 2) {
       bench_tick(kTicks);
       bench_plan(kPrograms);
       bench_certificate(kPrograms);
+      bench_walk(kPaths);
     } else {
       std::cerr << kUsage;
       return 2;

@@ -72,4 +72,33 @@ MotionProgram random_lin(const RobotModel& robot, int moves, std::uint64_t seed)
   return program;
 }
 
+RobotPtr walking_robot() {
+  JointLimits limits;
+  limits.velocity.resize(6);
+  limits.velocity << 2.1, 2.1, 2.6, 4.0, 4.0, 6.0;
+  limits.acceleration = 10.0 * limits.velocity;
+  limits.jerk = 100.0 * limits.velocity;
+  limits.position_min = JointVector::Constant(6, -1e3);
+  limits.position_max = JointVector::Constant(6, 1e3);
+  limits.coupling.resize(0, 6);
+  limits.coupling_lower.resize(0);
+  limits.coupling_upper.resize(0);
+  return RobotModel::joint_robot(limits);
+}
+
+MotionProgram random_walk(const RobotModel& robot, int points, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> length(0.1, 0.6);
+  JointVector q = JointVector::Zero(robot.joints());
+  MotionProgram program = empty_program(robot, q);
+  for (int k = 1; k < points; ++k) {
+    JointVector direction(robot.joints());
+    for (int i = 0; i < robot.joints(); ++i) direction[i] = normal(random);
+    q += length(random) * direction.normalized();
+    add(program, PtpMove{JointTarget{q}}, {});
+  }
+  return program;
+}
+
 }  // namespace viapoint::bench

@@ -1,5 +1,5 @@
 /// @file
-/// Seeded programs for the PUMA 560.
+/// Seeded programs for the PUMA 560, and for an arm of six joints without kinematics.
 #pragma once
 
 #include <cstdint>
@@ -15,5 +15,11 @@ namespace viapoint::bench {
 /// `moves` straight lines between random poses in a box in front of the arm, the tool tilted by a
 /// few degrees, blended within 20 mm. Such a program can be impossible.
 [[nodiscard]] MotionProgram random_lin(const RobotModel& robot, int moves, std::uint64_t seed);
+/// Six joints that take 2.1 2.1 2.6 4 4 6 rad/s, ten times that a second, and a hundred times that
+/// a second squared.
+[[nodiscard]] RobotPtr walking_robot();
+/// `points` way-points, the start among them, 0.1 to 0.6 rad apart in random directions, each a
+/// stop.
+[[nodiscard]] MotionProgram random_walk(const RobotModel& robot, int points, std::uint64_t seed);
 
 }  // namespace viapoint::bench

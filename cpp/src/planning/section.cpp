@@ -51,7 +51,7 @@ class Builder {
     if (!corner.possible) return stop(std::move(outcome));
 
     const JointPath head = cut(tail_, 0.0, tail_.length() - corner.cut_before);
-    JointPath rest = cut(after.path, corner.cut_after, after.path.length(), corner.scale_after);
+    JointPath rest = cut(after.path, corner.cut_after, after.path.length());
     const double gain = gain_of(i, head, corner.blend, rest);
     if (gain <= 0.0) {
       char reason[96];

@@ -9,20 +9,26 @@
 /// its tangent lies below, so limits held with the tangent hold in truth (convex–concave procedure,
 /// Lipp & Boyd 2016), and every iterate is feasible. Each Newton step of the log barrier takes a
 /// new tangent and costs one banded solution, O(nodes).
+///
+/// Where cells of different scale of s meet, b and b' at the node are those by the cell before; the
+/// cell after sees them times gear² and gear.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <vector>
 
+#include "trajectory/path_timing_course.hpp"
 #include "trajectory/path_timing_grid.hpp"
 #include "trajectory/path_timing_newton.hpp"
+#include "trajectory/path_timing_places.hpp"
 #include "trajectory/path_timing_span.hpp"
 
 namespace viapoint::path_timing {
 
 class BarrierProblem {
  public:
-  BarrierProblem(const JointPath& path, const JointLimits& limits, const Grid& grid);
+  BarrierProblem(const Course& course, const Grid& grid);
 
   /// A strictly feasible start out of the grid's guess.
   [[nodiscard]] SquareRate start() const;
@@ -33,59 +39,86 @@ class BarrierProblem {
   /// @param weight, last_weight first and last weight of the barrier, as a share of time: what is
   ///        left to gain is about the last weight times two (the limits active in a cell)
   /// @returns false if the numbers gave out
-  [[nodiscard]] bool solve(SquareRate& rate, double weight, double last_weight) const;
+  [[nodiscard]] bool solve(SquareRate& rate, double weight, double last_weight);
 
   /// Motion along the cells, C² in time.
   [[nodiscard]] std::vector<TimedSpan> spans(const SquareRate& rate) const;
   /// Shares that the model sees in each cell, at its places.
   [[nodiscard]] std::vector<Shares> shares(const SquareRate& rate) const;
-  /// Multiplies the limits of each cell.
-  void scale_limits(const std::vector<Shares>& factors);
+  /// What the limits of each cell are multiplied by.
+  [[nodiscard]] Shares limit_factors(size_t cell) const { return cells_[cell].factor; }
+  void set_limit_factors(const std::vector<Shares>& factors);
 
  private:
-  struct AccelerationRow {
-    double b, slope;
+  /// Rows come in pairs, the last one filled up with zeros.
+  using Pair = Eigen::Array2d;
+  /// |b · value + b' · slope| <= 1, by share of an acceleration limit.
+  struct AccelerationRows {
+    Pair b, slope;
   };
-  struct JerkRow {
-    double b, slope, bend;
+  /// |b · value + h b' · slope + h² b'' · bend| <= b^{-1/2}, by share of a jerk limit.
+  struct JerkRows {
+    Pair b, slope, bend;
   };
-  struct Rows {
-    size_t begin = 0, end = 0;
+  /// Of a pair of two-sided rows: what is used, y, and 1 / (1 - y²).
+  struct Use {
+    Pair y, inverse;
   };
-  struct NodeRows {
-    double ceiling = 0.0;  ///< of b, from velocity
-    Rows acceleration;
+  /// The same of a straight cell: of jerk at kStraightPlaces, then of acceleration in the middle.
+  struct StraightUse {
+    std::array<double, kStraightPlaces.size() + 1> y{}, inverse{};
   };
-  /// Jerk rows at share x of a cell; b, b', b'' there by the cell's four unknowns.
-  struct Place {
-    Four value{}, slope{}, bend{};
-    Rows rows;
+  struct Node {
+    double ceiling = 0.0;       ///< of b, from velocity
+    double most = 0.0;          ///< likewise, with the factors of the cells and the ramps
+    double room = 1.0;          ///< factor on the acceleration limits
+    size_t begin = 0, end = 0;  ///< rows
   };
   struct CellRows {
-    double length = 0.0;
-    std::array<Place, 3> places;
-    size_t count = 0;                                       ///< of places
-    double velocity = 1.0, acceleration = 1.0, jerk = 1.0;  ///< factors on the limits
+    double length = 0.0, gear = 1.0;
+    double ceiling = 0.0;  ///< of b inside, in its own scale
+    /// Rows of a straight cell, which has no others: of jerk by h² b'', of acceleration by h b'.
+    double straight_jerk = 0.0, straight_acceleration = 0.0;
+    size_t begin = 0, end = 0;     ///< rows of all places
+    Shares factor{1.0, 1.0, 1.0};  ///< on the limits
+
+    /// Of the inner Bernstein coefficients of b, which bound it between the nodes.
+    [[nodiscard]] double most() const { return ceiling * factor.velocity * factor.velocity; }
+    [[nodiscard]] bool straight() const { return straight_jerk > 0.0; }
+    [[nodiscard]] Four numbers(const NodeRate& from, const NodeRate& to) const {
+      return {gear * gear * from.value, length * gear * from.slope, to.value, length * to.slope};
+    }
   };
 
-  void add_acceleration_rows(const PathPoint& p, const JointPiece& piece, Rows& rows);
-  void add_jerk_rows(const PathPoint& p, const JointPiece& piece, Rows& rows);
-  double ramp_ceiling(const JointPiece& piece, double from, double to, bool leaving) const;
-  double largest_step(const SquareRate& rate, const SquareRate& step,
-                      const NewtonSystem& newton) const;
-  /// Gradient of the barrier with one weight, curvature with another.
-  void assemble(const SquareRate& rate, double weight, double curvature,
-                NewtonSystem& newton) const;
-  double start_tie() const { return 4.0 / 3.0 / cells_.front().length; }
-  double end_tie() const { return -4.0 / 3.0 / cells_.back().length; }
+  void add_cell(const Cell& cell, bool inner);
+  void add_node(const Cell& before, const Cell& after);
+  void add_acceleration_rows(size_t stretch, double s, double gear);
+  [[nodiscard]] double rate_ceiling(size_t stretch, double s) const;
+  [[nodiscard]] double ramp_ceiling(size_t stretch, double from, double to, bool leaving) const;
+  void set_ceilings();
+  /// Gradient of the barrier with one weight, curvature with another. Returns the time.
+  double assemble(const SquareRate& rate, double weight, double curvature, NewtonSystem& newton);
+  double assemble_cell(size_t k, const SquareRate& rate, double weight, double curvature,
+                       NewtonSystem& newton);
+  void assemble_straight(size_t cell, const Four& x, double weight, double curvature,
+                         CellTerms& terms);
+  void assemble_curved(const CellRows& cell, const Four& x, double weight, double curvature,
+                       CellTerms& terms);
+  void assemble_node(size_t k, const NodeRate& rate, double weight, double curvature,
+                     NewtonSystem& newton);
+  [[nodiscard]] double largest_step(const SquareRate& rate, const SquareRate& step) const;
+  [[nodiscard]] double jerk_share(size_t cell, const SquareRate& rate) const;
+  [[nodiscard]] double start_tie() const { return 4.0 / 3.0 / cells_.front().length; }
+  [[nodiscard]] double end_tie() const { return -4.0 / 3.0 / cells_.back().length; }
 
-  const JointPath* path_;
-  const JointLimits* limits_;
+  const Course* course_;
   Grid grid_;
-  std::vector<NodeRows> nodes_;
+  std::vector<Node> nodes_;
   std::vector<CellRows> cells_;
-  std::vector<AccelerationRow> acceleration_rows_;
-  std::vector<JerkRow> jerk_rows_;
+  std::vector<AccelerationRows> acceleration_rows_;
+  std::vector<JerkRows> jerk_rows_;
+  std::vector<Use> acceleration_use_, jerk_use_;  ///< of the rows
+  std::vector<StraightUse> straight_use_;         ///< of the cells
   double start_ceiling_ = 0.0, end_ceiling_ = 0.0;
 };
 

@@ -69,6 +69,8 @@ Extreme most_extreme(const JointPath& path, const JointLimits& limits) {
 
 }  // namespace
 
+bool in_range(double seconds) { return seconds >= kShortest && seconds <= kLongest; }
+
 UniformCeilings within_range(UniformCeilings ceilings, const JointPath& path,
                              const JointLimits& limits) {
   const double length = path.length();
@@ -76,7 +78,7 @@ UniformCeilings within_range(UniformCeilings ceilings, const JointPath& path,
                                    std::cbrt(length / ceilings.jerk)});
   // Written so that NaN is out of range.
   const bool positive = ceilings.rate > 0.0 && ceilings.change > 0.0 && ceilings.jerk > 0.0;
-  if (!positive || !(seconds >= kShortest && seconds <= kLongest)) {
+  if (!positive || !in_range(seconds)) {
     most_extreme(path, limits).refuse(positive ? seconds : std::numeric_limits<double>::infinity());
   }
   constexpr double kShortestPhase = 1e-13;

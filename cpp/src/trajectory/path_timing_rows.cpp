@@ -7,122 +7,155 @@
 
 namespace viapoint::path_timing {
 
-BarrierProblem::BarrierProblem(const JointPath& path, const JointLimits& limits, const Grid& grid)
-    : path_(&path), limits_(&limits), grid_(grid) {
+BarrierProblem::BarrierProblem(const Course& course, const Grid& grid)
+    : course_(&course), grid_(grid) {
   const size_t cells = grid.cells.size();
-  cells_.resize(cells);
-  nodes_.resize(cells - 1);
+  const size_t pairs = static_cast<size_t>(course.joints() + 1) / 2;
+  cells_.reserve(cells);
+  nodes_.reserve(cells);
+  jerk_rows_.reserve(cells * kCurvedPlaces.size() * pairs);
+  acceleration_rows_.reserve(cells * (pairs + 1));
   for (size_t k = 0; k < cells; ++k) {
-    const Cell& cell = grid.cells[k];
-    const JointPiece& piece = path.pieces()[cell.piece];
-    CellRows& rows = cells_[k];
-    rows.length = cell.length();
-    const PathPoint left = piece.at(cell.s0), right = piece.at(cell.s1);
-    const bool inner = k > 0 && k + 1 < cells;
-    if (inner) {
-      const double h = rows.length;
-      const auto add = [&](double x, const PathPoint& p) {
-        Place& place = rows.places[rows.count++];
-        place.value = basis(x, h);
-        place.slope = basis_slope(x, h);
-        place.bend = basis_bend(x, h);
-        add_jerk_rows(p, piece, place.rows);
-      };
-      add(0.0, left);
-      add(1.0, right);
-      if (piece.coefficients.bottomRows<4>().any()) add(0.5, piece.at(0.5 * (cell.s0 + cell.s1)));
-    }
-    const auto ceiling = [&](const PathPoint& p) {
-      double v = 1.0 / piece.rate_limit;
-      for (int i = 0; i < piece.joints(); ++i) {
-        v = std::max(v, std::abs(p.q1[i]) / (limits.velocity[i] * piece.scale));
-      }
-      return 1.0 / (v * v);
-    };
-    if (k + 1 < cells) {
-      nodes_[k].ceiling = ceiling(right);
-      // A knot between pieces that differ in their limits obeys the stricter: rows of both.
-      const Cell& next = grid.cells[k + 1];
-      const JointPiece& after = path.pieces()[next.piece];
-      Rows& acceleration = nodes_[k].acceleration;
-      acceleration.begin = acceleration_rows_.size();
-      const bool differs =
-          after.scale != piece.scale || after.rate_change_limit != piece.rate_change_limit;
-      if (differs) add_acceleration_rows(right, piece, acceleration);
-      add_acceleration_rows(next.piece == cell.piece ? right : after.at(next.s0), after,
-                            acceleration);
-    }
-    if (k > 0) nodes_[k - 1].ceiling = std::min(nodes_[k - 1].ceiling, ceiling(left));
+    add_cell(grid.cells[k], k > 0 && k + 1 < cells);
+    if (k + 1 < cells) add_node(grid.cells[k], grid.cells[k + 1]);
   }
-  start_ceiling_ = ramp_ceiling(path.pieces().front(), 0.0, grid.cells.front().s1, true);
-  end_ceiling_ =
-      ramp_ceiling(path.pieces().back(), grid.cells.back().s0, grid.cells.back().s1, false);
+  const Cell& first = grid.cells.front();
+  const Cell& last = grid.cells.back();
+  start_ceiling_ = ramp_ceiling(first.piece, first.s0, first.s1, true);
+  end_ceiling_ = ramp_ceiling(last.piece, last.s0, last.s1, false);
   // A speed that nothing bounds gets a ceiling far above the rest.
   double least = std::min(start_ceiling_, end_ceiling_);
-  for (const NodeRows& node : nodes_) least = std::min(least, node.ceiling);
-  for (NodeRows& node : nodes_) node.ceiling = std::min(node.ceiling, 1e12 * least);
-}
-
-void BarrierProblem::add_acceleration_rows(const PathPoint& p, const JointPiece& piece,
-                                           Rows& rows) {
-  // Joints that do not bend here differ by one factor only: the strictest is enough.
-  double straight = 0.5 / piece.rate_change_limit;
-  for (int i = 0; i < piece.joints(); ++i) {
-    const double per_limit = 1.0 / (limits_->acceleration[i] * piece.scale);
-    if (p.q2[i] == 0.0) {
-      straight = std::max(straight, 0.5 * std::abs(p.q1[i]) * per_limit);
-    } else {
-      acceleration_rows_.push_back({p.q2[i] * per_limit, 0.5 * p.q1[i] * per_limit});
-    }
+  for (const Node& node : nodes_) least = std::min(least, node.ceiling);
+  for (Node& node : nodes_) node.ceiling = std::min(node.ceiling, 1e12 * least);
+  for (size_t k = 1; k + 1 < cells; ++k) {
+    const double gear = cells_[k].gear;
+    cells_[k].ceiling = std::max(gear * gear * nodes_[k - 1].ceiling, nodes_[k].ceiling);
   }
-  if (straight > 0.0) acceleration_rows_.push_back({0.0, straight});
-  rows.end = acceleration_rows_.size();
+  acceleration_use_.resize(acceleration_rows_.size());
+  jerk_use_.resize(jerk_rows_.size());
+  straight_use_.resize(cells_.size());
+  set_ceilings();
 }
 
-void BarrierProblem::add_jerk_rows(const PathPoint& p, const JointPiece& piece, Rows& rows) {
+void BarrierProblem::add_cell(const Cell& cell, bool inner) {
+  const Stretch& stretch = course_->stretches()[cell.piece];
+  CellRows rows;
+  rows.length = cell.length();
+  rows.gear = cell.gear;
   rows.begin = jerk_rows_.size();
-  double straight = 0.0;
-  for (int i = 0; i < piece.joints(); ++i) {
-    const double per_limit = 1.0 / (limits_->jerk[i] * piece.scale);
-    if (p.q2[i] == 0.0 && p.q3[i] == 0.0) {
-      straight = std::max(straight, 0.5 * std::abs(p.q1[i]) * per_limit);
-    } else {
-      jerk_rows_.push_back(
-          {p.q3[i] * per_limit, 1.5 * p.q2[i] * per_limit, 0.5 * p.q1[i] * per_limit});
+  const double h = rows.length;
+  if (inner && stretch.straight) {
+    rows.straight_jerk = 0.5 / (stretch.jerk_limit * h * h);
+    rows.straight_acceleration = 0.5 / (stretch.change_limit * h);
+  } else if (inner) {
+    JointRates rates;
+    const auto joints = static_cast<size_t>(course_->joints());
+    for (const Place& place : kCurvedPlaces) {
+      course_->rates(cell.piece, cell.s0 + place.at * h, rates);
+      for (size_t i = 0; i < joints; i += 2) {
+        const auto pair = [i](const auto& values) { return Pair(values[i], values[i + 1]); };
+        jerk_rows_.push_back(
+            {pair(rates.jerk3), 1.5 / h * pair(rates.jerk2), 0.5 / (h * h) * pair(rates.jerk1)});
+      }
     }
   }
-  if (straight > 0.0) jerk_rows_.push_back({0.0, 0.0, straight});
   rows.end = jerk_rows_.size();
+  cells_.push_back(rows);
 }
 
-double BarrierProblem::ramp_ceiling(const JointPiece& piece, double from, double to,
-                                    bool leaving) const {
+void BarrierProblem::add_node(const Cell& before, const Cell& after) {
+  const Stretch& here = course_->stretches()[before.piece];
+  const Stretch& next = course_->stretches()[after.piece];
+  Node node;
+  node.begin = acceleration_rows_.size();
+  node.ceiling = std::min(rate_ceiling(before.piece, before.s1),
+                          rate_ceiling(after.piece, after.s0) / (after.gear * after.gear));
+  // A knot between pieces that differ in their limits obeys the stricter: rows of both. Otherwise
+  // one will do, and best that of a straight piece.
+  const bool knot = before.piece != after.piece;
+  const bool same = here.geometry->scale == next.geometry->scale &&
+                    here.geometry->rate_change_limit == next.geometry->rate_change_limit;
+  if (!knot || !same || here.straight || !next.straight) {
+    add_acceleration_rows(before.piece, before.s1, 1.0);
+  }
+  if (knot && (!same || (next.straight && !here.straight))) {
+    add_acceleration_rows(after.piece, after.s0, after.gear);
+  }
+  node.end = acceleration_rows_.size();
+  nodes_.push_back(node);
+}
+
+void BarrierProblem::add_acceleration_rows(size_t stretch, double s, double gear) {
+  const Stretch& here = course_->stretches()[stretch];
+  if (std::isfinite(here.change_limit)) {
+    acceleration_rows_.push_back({Pair::Zero(), Pair(0.5 * gear / here.change_limit, 0.0)});
+  }
+  if (here.straight) return;
+  JointRates rates;
+  course_->rates(stretch, s, rates);
+  for (size_t i = 0; i < static_cast<size_t>(course_->joints()); i += 2) {
+    const auto pair = [i](const auto& values) { return Pair(values[i], values[i + 1]); };
+    acceleration_rows_.push_back(
+        {gear * gear * pair(rates.acceleration2), 0.5 * gear * pair(rates.acceleration1)});
+  }
+}
+
+double BarrierProblem::rate_ceiling(size_t stretch, double s) const {
+  const Stretch& here = course_->stretches()[stretch];
+  double v = 1.0 / here.rate_limit;
+  if (!here.straight) {
+    JointRates rates;
+    course_->rates(stretch, s, rates);
+    for (const double share : rates.velocity) v = std::max(v, std::abs(share));
+  }
+  return 1.0 / (v * v);
+}
+
+double BarrierProblem::ramp_ceiling(size_t stretch, double from, double to, bool leaving) const {
   // Along the ramp ṡ = √b τ², s̈ = 2b/(3 s1) τ, s⃛ = 2b^{3/2}/(9 s1²) with τ the share of its time.
   constexpr int kInstants = 8;
+  const Stretch& here = course_->stretches()[stretch];
   const double s1 = to - from;
+  const double sign = leaving ? 1.0 : -1.0;
   double ceiling = std::numeric_limits<double>::infinity();
   for (int k = 0; k <= kInstants; ++k) {
     const double tau = static_cast<double>(k) / kInstants;
     const double along = s1 * tau * tau * tau;
-    const PathPoint p = piece.at(leaving ? from + along : to - along);
-    const double sign = leaving ? 1.0 : -1.0;
-    double v = tau * tau / piece.rate_limit;
-    double a = tau * 2.0 / (3.0 * s1) / piece.rate_change_limit;
-    double j = 0.0;
-    for (int i = 0; i < piece.joints(); ++i) {
-      const double per_scale = 1.0 / piece.scale;
-      v = std::max(v, std::abs(p.q1[i]) * tau * tau / limits_->velocity[i] * per_scale);
-      const double acceleration =
-          p.q2[i] * tau * tau * tau * tau + sign * p.q1[i] * 2.0 / (3.0 * s1) * tau;
-      a = std::max(a, std::abs(acceleration) / limits_->acceleration[i] * per_scale);
-      const double t3 = tau * tau * tau;
-      const double jerk =
-          p.q3[i] * t3 * t3 + sign * p.q2[i] * 2.0 / s1 * t3 + p.q1[i] * 2.0 / (9.0 * s1 * s1);
-      j = std::max(j, std::abs(jerk) / limits_->jerk[i] * per_scale);
+    JointRates rates;
+    course_->rates(stretch, leaving ? from + along : to - along, rates);
+    const double rate = tau * tau, change = sign * 2.0 / (3.0 * s1) * tau;
+    double v = rate / here.rate_limit, a = std::abs(change) / here.change_limit, j = 0.0;
+    for (size_t i = 0; i < static_cast<size_t>(course_->joints()); ++i) {
+      v = std::max(v, std::abs(rates.velocity[i]) * rate);
+      a = std::max(
+          a, std::abs(rates.acceleration2[i] * rate * rate + rates.acceleration1[i] * change));
+      j = std::max(
+          j, std::abs(rates.jerk3[i] * rate * rate * rate + 3.0 * rates.jerk2[i] * rate * change +
+                      rates.jerk1[i] * 2.0 / (9.0 * s1 * s1)));
     }
     ceiling = std::min({ceiling, 1.0 / (v * v), 1.0 / a, 1.0 / std::cbrt(j * j)});
   }
   return ceiling;
+}
+
+void BarrierProblem::set_ceilings() {
+  for (size_t k = 0; k < nodes_.size(); ++k) {
+    const CellRows& before = cells_[k];
+    const CellRows& after = cells_[k + 1];
+    const double factor = std::min(before.factor.velocity, after.factor.velocity);
+    nodes_[k].most = nodes_[k].ceiling * factor * factor;
+    nodes_[k].room = std::min(before.factor.acceleration, after.factor.acceleration);
+  }
+  const auto by_jerk = [](double ceiling, double jerk) { return ceiling * std::cbrt(jerk * jerk); };
+  nodes_.front().most =
+      std::min(nodes_.front().most, by_jerk(start_ceiling_, cells_.front().factor.jerk));
+  nodes_.back().most =
+      std::min(nodes_.back().most, by_jerk(end_ceiling_, cells_.back().factor.jerk));
+}
+
+void BarrierProblem::set_limit_factors(const std::vector<Shares>& factors) {
+  for (size_t k = 0; k < cells_.size(); ++k) cells_[k].factor = factors[k];
+  set_ceilings();
 }
 
 }  // namespace viapoint::path_timing

@@ -67,77 +67,83 @@ Rates rate_curvatures(const Taylor& p, const Taylor& w) {
   return {third, fourth, fifth};
 }
 
-bool is_straight(const JointPiece& piece) {
-  return (piece.coefficients.bottomRows<4>().array() == 0.0).all();
+/// A bound of |Σ c_k x^k| on [0, 1], relatively no more than `slack` above what is reached.
+template <size_t Size>
+double magnitude(const std::array<double, Size>& c, double slack) {
+  std::array<double, Size> b = to_bernstein(c);
+  double scale = std::max(std::abs(b.front()), std::abs(b.back())), hull = 0.0;
+  for (double value : b) hull = std::max(hull, std::abs(value));
+  if (hull <= scale * (1.0 + slack)) return hull;
+  const double gap = slack * std::max(scale, 0.1 * hull);
+  const double above = largest_value(b, scale, gap);
+  for (double& value : b) value = -value;
+  return largest_value(b, above, gap);
 }
 
-/// Shares of a motion straight along s = length · u, from the extrema of u̇, ü, u⃛.
-/// @param per_velocity… one over the limits; zero where there is none
-void include_straight(const TimedSpan& span, double length, double per_velocity,
-                      double per_acceleration, double per_jerk, ShareBounds& into) {
+/// Shares of a motion straight along σ = length · u, from the extrema of u̇, ü, u⃛.
+Shares straight_shares(const TimedSpan& span, const Stretch& stretch, double slack) {
   const auto& c = span.u;
   const double per_second = 1.0 / span.duration;
-  const double rate =
-      largest_magnitude<5>({c[1], 2 * c[2], 3 * c[3], 4 * c[4], 5 * c[5]}) * per_second * length;
-  const double change = largest_magnitude<4>({2 * c[2], 6 * c[3], 12 * c[4], 20 * c[5]}) *
-                        per_second * per_second * length;
-  const double jerk = largest_magnitude<3>({6 * c[3], 24 * c[4], 60 * c[5]}) * per_second *
-                      per_second * per_second * length;
-  const Shares shares{rate * per_velocity, change * per_acceleration, jerk * per_jerk};
-  into.reached.include(shares);
-  into.proven.include(shares);
+  const double first = stretch.length * per_second, second = first * per_second;
+  Shares shares;
+  if (std::isfinite(stretch.rate_limit)) {
+    shares.velocity = magnitude<5>({c[1], 2 * c[2], 3 * c[3], 4 * c[4], 5 * c[5]}, slack) * first /
+                      stretch.rate_limit;
+  }
+  if (std::isfinite(stretch.change_limit)) {
+    shares.acceleration = magnitude<4>({2 * c[2], 6 * c[3], 12 * c[4], 20 * c[5]}, slack) * second /
+                          stretch.change_limit;
+  }
+  if (stretch.straight && std::isfinite(stretch.jerk_limit)) {
+    shares.jerk = magnitude<3>({6 * c[3], 24 * c[4], 60 * c[5]}, slack) * second * per_second /
+                  stretch.jerk_limit;
+  }
+  return shares;
 }
 
-/// One joint's motion p(u(t)) against its limits, over `cells` parts of the span.
-class ScalarBounds {
- public:
-  ScalarBounds(const TimedSpan& span, int cells) : cells_(cells), duration_(span.duration) {
-    for (int k = 0; k <= cells; ++k) {
-      Taylor d = derivatives(span.u, static_cast<double>(k) / cells);
-      by_time(d, span.duration);
-      at_.push_back(d);
+/// All joints' motion q(u(t)) against their limits, over `cells` parts of the span.
+ShareBounds curved_shares(const Course& course, const TimedSpan& span, int cells) {
+  const JointPiece& piece = *course.stretches()[span.piece].geometry;
+  const auto& q = piece.coefficients;
+  const auto joints = static_cast<int>(q.cols());
+  std::array<Rates, kMaxJoints> worst{};
+  for (int k = 0; k <= cells; ++k) {
+    Taylor w = derivatives(span.u, static_cast<double>(k) / cells);
+    by_time(w, span.duration);
+    const double u = w[0];
+    for (int i = 0; i < joints; ++i) {
+      const double c2 = q(2, i), c3 = q(3, i), c4 = q(4, i), c5 = q(5, i);
+      const Rates here = rates(q(1, i) + u * (2 * c2 + u * (3 * c3 + u * (4 * c4 + u * 5 * c5))),
+                               2 * c2 + u * (6 * c3 + u * (12 * c4 + u * 20 * c5)),
+                               6 * c3 + u * (24 * c4 + u * 60 * c5), w);
+      Rates& most = worst[static_cast<size_t>(i)];
+      most.velocity = std::max(most.velocity, std::abs(here.velocity));
+      most.acceleration = std::max(most.acceleration, std::abs(here.acceleration));
+      most.jerk = std::max(most.jerk, std::abs(here.jerk));
     }
-    Taylor mid = derivatives(span.u, 0.5);
-    bound_ = derivative_bounds(mid, 0.5);
-    by_time(bound_, span.duration);
-    const double radius = std::max(std::abs(at_.back()[0] - mid[0]), std::abs(at_[0][0] - mid[0]));
-    middle_ = mid[0];
-    radius_ = radius;
   }
-
-  /// @param per_velocity… one over the limits; zero where there is none
-  void include(const Taylor& path, double per_velocity, double per_acceleration, double per_jerk,
-               ShareBounds& into) const {
-    const Taylor p_bound = derivative_bounds(derivatives(path, middle_), radius_);
-    const Rates curvature = rate_curvatures(p_bound, bound_);
-    Rates worst{0.0, 0.0, 0.0};
-    for (const Taylor& w : at_) {
-      const double u = w[0];
-      const double p1 =
-          path[1] + u * (2 * path[2] + u * (3 * path[3] + u * (4 * path[4] + u * 5 * path[5])));
-      const double p2 = 2 * path[2] + u * (6 * path[3] + u * (12 * path[4] + u * 20 * path[5]));
-      const double p3 = 6 * path[3] + u * (24 * path[4] + u * 60 * path[5]);
-      const Rates here = rates(p1, p2, p3, w);
-      worst.velocity = std::max(worst.velocity, std::abs(here.velocity));
-      worst.acceleration = std::max(worst.acceleration, std::abs(here.acceleration));
-      worst.jerk = std::max(worst.jerk, std::abs(here.jerk));
-    }
-    const double step = duration_ / cells_;
-    const double chord = step * step / 8.0;
-    into.reached.include({worst.velocity * per_velocity, worst.acceleration * per_acceleration,
-                          worst.jerk * per_jerk});
-    into.proven.include({(worst.velocity + chord * curvature.velocity) * per_velocity,
-                         (worst.acceleration + chord * curvature.acceleration) * per_acceleration,
-                         (worst.jerk + chord * curvature.jerk) * per_jerk});
+  const Taylor middle = derivatives(span.u, 0.5);
+  Taylor bound = derivative_bounds(middle, 0.5);
+  by_time(bound, span.duration);
+  double end = 0.0;
+  for (double c : span.u) end += c;
+  const double radius = std::max(std::abs(end - middle[0]), std::abs(span.u[0] - middle[0]));
+  const double step = span.duration / cells, chord = step * step / 8.0;
+  ShareBounds bounds;
+  for (int i = 0; i < joints; ++i) {
+    const Taylor path{q(0, i), q(1, i), q(2, i), q(3, i), q(4, i), q(5, i)};
+    const Rates curvature =
+        rate_curvatures(derivative_bounds(derivatives(path, middle[0]), radius), bound);
+    const Rates& most = worst[static_cast<size_t>(i)];
+    const Shares per = course.shares_per_rate(span.piece, i);
+    bounds.reached.include(
+        {most.velocity * per.velocity, most.acceleration * per.acceleration, most.jerk * per.jerk});
+    bounds.proven.include({(most.velocity + chord * curvature.velocity) * per.velocity,
+                           (most.acceleration + chord * curvature.acceleration) * per.acceleration,
+                           (most.jerk + chord * curvature.jerk) * per.jerk});
   }
-
- private:
-  int cells_;
-  double duration_;
-  std::vector<Taylor> at_;
-  Taylor bound_{};
-  double middle_ = 0.0, radius_ = 0.0;
-};
+  return bounds;
+}
 
 }  // namespace
 
@@ -170,65 +176,33 @@ TimedSpan TimedSpan::constant_jerk(size_t piece, double length, const RateState&
   return span;
 }
 
-void Shares::include(const Shares& other) {
-  // What is no number is no bound: infinity, which no maximum loses again.
-  const auto raise = [](double& mine, double theirs) {
-    mine = std::isnan(theirs) ? std::numeric_limits<double>::infinity() : std::max(mine, theirs);
-  };
-  raise(velocity, other.velocity);
-  raise(acceleration, other.acceleration);
-  raise(jerk, other.jerk);
-}
-
-double Shares::stretch() const {
-  return std::max({velocity, std::sqrt(acceleration), std::cbrt(jerk)});
-}
-
-ShareBounds bound_shares(const JointPiece& piece, const JointLimits& limits, const TimedSpan& span,
-                         int cells) {
-  ShareBounds bounds;
-  double per_v = 1.0 / piece.rate_limit;
-  double per_a = 1.0 / piece.rate_change_limit;
-  double per_j = 0.0;
-  if (is_straight(piece)) {
-    for (int i = 0; i < piece.joints(); ++i) {
-      const double rate = std::abs(piece.coefficients(1, i)) / piece.length;
-      per_v = std::max(per_v, rate / (limits.velocity[i] * piece.scale));
-      per_a = std::max(per_a, rate / (limits.acceleration[i] * piece.scale));
-      per_j = std::max(per_j, rate / (limits.jerk[i] * piece.scale));
-    }
-    include_straight(span, piece.length, per_v, per_a, per_j, bounds);
-    return bounds;
-  }
-  if (per_v > 0.0 || per_a > 0.0) {
-    include_straight(span, piece.length, per_v, per_a, per_j, bounds);
-  }
-  const ScalarBounds scalar(span, cells);
-  for (int i = 0; i < piece.joints(); ++i) {
-    const auto c = piece.coefficients.col(i);
-    scalar.include({c[0], c[1], c[2], c[3], c[4], c[5]}, 1.0 / (limits.velocity[i] * piece.scale),
-                   1.0 / (limits.acceleration[i] * piece.scale),
-                   1.0 / (limits.jerk[i] * piece.scale), bounds);
-  }
+ShareBounds bound_shares(const Course& course, const TimedSpan& span, int cells, double slack) {
+  const Stretch& stretch = course.stretches()[span.piece];
+  const Shares along = straight_shares(span, stretch, slack);
+  if (stretch.straight) return {along, along};
+  ShareBounds bounds = curved_shares(course, span, cells);
+  bounds.reached.include(along);
+  bounds.proven.include(along);
   return bounds;
 }
 
-Shares prove(const JointPath& path, const JointLimits& limits, const std::vector<TimedSpan>& spans,
-             double slack) {
+Shares prove(const Course& course, const std::vector<TimedSpan>& spans, double slack) {
   constexpr int kFirstCells = 4;
   constexpr int kMostCells = 1 << 12;
   std::vector<ShareBounds> bounds;
   bounds.reserve(spans.size());
   double reached = 0.0;
   for (const TimedSpan& span : spans) {
-    bounds.push_back(bound_shares(path.pieces()[span.piece], limits, span, kFirstCells));
+    bounds.push_back(bound_shares(course, span, kFirstCells, slack));
     reached = std::max(reached, bounds.back().reached.stretch());
   }
   Shares worst;
   for (size_t k = 0; k < spans.size(); ++k) {
+    const bool straight = course.stretches()[spans[k].piece].straight;
     for (int cells = 2 * kFirstCells;
-         cells <= kMostCells && bounds[k].proven.stretch() > reached * (1.0 + slack); cells *= 2) {
-      bounds[k] = bound_shares(path.pieces()[spans[k].piece], limits, spans[k], cells);
+         !straight && cells <= kMostCells && bounds[k].proven.stretch() > reached * (1.0 + slack);
+         cells *= 2) {
+      bounds[k] = bound_shares(course, spans[k], cells, slack);
       reached = std::max(reached, bounds[k].reached.stretch());
     }
     worst.include(bounds[k].proven);

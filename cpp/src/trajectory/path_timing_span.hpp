@@ -5,8 +5,7 @@
 #include <array>
 #include <vector>
 
-#include "viapoint/core/joint_limits.hpp"
-#include "viapoint/path/joint_path.hpp"
+#include "trajectory/path_timing_course.hpp"
 #include "viapoint/trajectory/trajectory_piece.hpp"
 
 namespace viapoint::path_timing {
@@ -18,26 +17,17 @@ struct RateState {
 
 /// u(x), a quintic in x = t / duration, on one path piece.
 struct TimedSpan {
-  size_t piece = 0;
+  size_t piece = 0;           ///< of the path, and stretch of the course
   double duration = 0.0;      ///< [s]
   std::array<double, 6> u{};  ///< coefficient of x^k
 
-  /// From one state to another (s counted from the start of the path piece), C² in time: quintic
-  /// Hermite interpolation.
+  /// From one state to another (s counted from the start of the piece, which is `length` long), C²
+  /// in time: quintic Hermite interpolation.
   [[nodiscard]] static TimedSpan between(size_t piece, double length, const RateState& from,
                                          const RateState& to, double duration);
   /// Constant jerk from `from`; `end` is the s that is reached, so that rounding leaves no gap.
   [[nodiscard]] static TimedSpan constant_jerk(size_t piece, double length, const RateState& from,
                                                double jerk, double end, double duration);
-};
-
-/// Largest shares of the limits, as bounds.
-struct Shares {
-  double velocity = 0.0, acceleration = 0.0, jerk = 0.0;
-
-  void include(const Shares& other);
-  /// The factor on time that makes the largest share one.
-  [[nodiscard]] double stretch() const;
 };
 
 /// What a bound on a span rests on: never below what is reached, never above what is proven.
@@ -50,12 +40,12 @@ struct ShareBounds {
 /// the error of linear interpolation; sup|f''| comes from the Taylor forms of q(u) and u(t) about
 /// the middle of the span and the chain rule (Faà di Bruno), without sampling.
 /// @param cells number of parts that the span is cut into
-[[nodiscard]] ShareBounds bound_shares(const JointPiece& piece, const JointLimits& limits,
-                                       const TimedSpan& span, int cells);
+/// @param slack how far apart the two may be on a straight stretch, relative
+[[nodiscard]] ShareBounds bound_shares(const Course& course, const TimedSpan& span, int cells,
+                                       double slack);
 
 /// Bounds of all spans, as tight as `slack` (relative to the worst that is reached anywhere).
-[[nodiscard]] Shares prove(const JointPath& path, const JointLimits& limits,
-                           const std::vector<TimedSpan>& spans, double slack);
+[[nodiscard]] Shares prove(const Course& course, const std::vector<TimedSpan>& spans, double slack);
 
 /// True if all numbers are finite, u stays in [0, 1] and never goes back, to rounding.
 [[nodiscard]] bool goes_forward(const TimedSpan& span);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 #include "trajectory/path_timing_barrier.hpp"
 #include "trajectory/path_timing_grid.hpp"
@@ -11,6 +13,7 @@
 #include "viapoint/core/error.hpp"
 
 namespace viapoint {
+namespace path_timing {
 namespace {
 
 void require_valid(const JointPath& path, const JointLimits& limits) {
@@ -35,83 +38,122 @@ void require_valid(const JointPath& path, const JointLimits& limits) {
   }
 }
 
-using path_timing::BarrierProblem;
-using path_timing::Shares;
-using path_timing::SquareRate;
-using path_timing::TimedSpan;
-
 /// How much of what is proven may be slack, relative.
-constexpr double kProofSlack = 1e-4;
+constexpr double kProofSlack = 1e-4, kExact = 1e-12;
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+/// A proof that costs no more than this leaves nothing to look for.
+constexpr double kGoodEnough = 1.02;
 /// A hair more than the bound, against the rounding of whoever checks the result.
 constexpr double kMargin = 1.0 + 1e-12;
 
 /// What the limits of each cell must be multiplied by for the motion, as proven, to use as much of
 /// them as the optimiser meant to.
-std::vector<Shares> corrections(const std::vector<Shares>& meant, const JointPath& path,
-                                const JointLimits& limits, const std::vector<TimedSpan>& spans) {
+/// @param most share of its limits that the present motion may use in the optimiser's eyes
+std::vector<Shares> corrections(const BarrierProblem& problem, const SquareRate& rate,
+                                const Course& course, const std::vector<TimedSpan>& spans,
+                                double most) {
   constexpr int kCells = 4;
-  constexpr double kOfInterest = 0.9, kLeast = 0.3, kMost = 1.1;
-  const auto factor = [=](double model, double real) {
+  constexpr double kSlack = 1e-2;
+  constexpr double kOfInterest = 0.3, kLeast = 0.3, kMost = 1.1;
+  const auto factor = [=](double model, double real, double now) {
     const bool counts = real >= kOfInterest && model >= 0.5 * kOfInterest;
-    return counts ? std::clamp(model / real, kLeast, kMost) : 1.0;
+    return counts ? std::max(std::clamp(model / real, kLeast, kMost), model / most) : now;
   };
+  const std::vector<Shares> meant = problem.shares(rate);
   std::vector<Shares> factors;
+  factors.reserve(spans.size());
   for (size_t k = 0; k < spans.size(); ++k) {
-    const Shares real =
-        bound_shares(path.pieces()[spans[k].piece], limits, spans[k], kCells).proven;
-    factors.push_back({factor(meant[k].velocity, real.velocity),
-                       factor(meant[k].acceleration, real.acceleration),
-                       factor(meant[k].jerk, real.jerk)});
+    const Shares real = bound_shares(course, spans[k], kCells, kSlack).proven;
+    const Shares now = problem.limit_factors(k);
+    factors.push_back({std::min(1.0, factor(meant[k].velocity, real.velocity, now.velocity)),
+                       factor(meant[k].acceleration, real.acceleration, now.acceleration),
+                       factor(meant[k].jerk, real.jerk, now.jerk)});
   }
   return factors;
 }
 
-/// The near-optimal timing, proven; empty if the method does not get there.
-std::vector<TimedSpan> quickest(const JointPath& path, const JointLimits& limits) {
-  constexpr int kPasses = 2, kMostPasses = 5;
-  constexpr double kGoodEnough = 1.02;
-  constexpr double kFirstWeight = 0.1, kRoughWeight = 0.01, kLastWeight = 1e-3;
-  const path_timing::Grid grid = path_timing::make_grid(path, limits);
+/// A proven timing.
+struct Timing {
+  std::vector<TimedSpan> spans;
+  double stretch = kInfinite;  ///< what the proof cost, as a factor on time
+};
+
+/// Cells in which the motion is much worse than the optimiser meant.
+std::vector<bool> too_coarse(const Course& course, const std::vector<TimedSpan>& spans) {
+  constexpr int kCells = 8;
+  std::vector<bool> coarse;
+  for (const TimedSpan& span : spans) {
+    const double stretch = bound_shares(course, span, kCells, kProofSlack).reached.stretch();
+    coarse.push_back(!goes_forward(span) || !(stretch <= kGoodEnough));
+  }
+  return coarse;
+}
+
+/// The near-optimal timing; empty if the method does not get there.
+Timing quickest(const Course& course) {
+  constexpr double kFirstWeight = 0.1, kLastWeight = 0.01;
+  constexpr int kMostPasses = 6;
+  constexpr double kUsed = 0.99;
+  Grid grid = make_grid(course);
   if (grid.cells.empty()) return {};
-  BarrierProblem problem(path, limits, grid);
-  SquareRate rate = problem.start();
-  if (!problem.solve(rate, kFirstWeight, kRoughWeight)) return {};
-  // The optimiser sees limits at a few places of a cell and b as a cubic in s; the motion is a
-  // quintic in time and held to its limits everywhere. Where the two differ, the limits given to
-  // the optimiser are corrected.
-  // Where that is not enough after the usual number of passes, a few more follow.
+  std::optional<BarrierProblem> problem(std::in_place, course, grid);
+  SquareRate rate = problem->start();
+  bool solved = problem->solve(rate, kFirstWeight, kFirstWeight);
+  Timing best;
   for (int pass = 1;; ++pass) {
-    problem.scale_limits(corrections(problem.shares(rate), path, limits, problem.spans(rate)));
-    problem.make_feasible(rate, 0);
-    const double last = pass >= kPasses ? kLastWeight : 0.4 * kRoughWeight;
-    if (!problem.solve(rate, kRoughWeight, last)) return {};
-    if (pass < kPasses) continue;
-    std::vector<TimedSpan> spans = problem.spans(rate);
-    const bool forward = std::all_of(spans.begin(), spans.end(), path_timing::goes_forward);
-    if (!forward && pass >= kMostPasses) return {};
-    if (!forward) continue;
-    const double stretch = prove(path, limits, spans, kProofSlack).stretch();
-    if (stretch > kGoodEnough && pass < kMostPasses) continue;
-    stretch_time(spans, stretch * kMargin);
-    return spans;
+    // The optimiser sees limits at a few places of a cell and b as a cubic in s; the motion is a
+    // quintic in time and held to its limits everywhere. Where the two differ, the limits given to
+    // the optimiser are corrected while it still keeps its distance from them.
+    problem->set_limit_factors(corrections(*problem, rate, course, problem->spans(rate), kUsed));
+    // What it has when the numbers give out is a motion too.
+    solved = solved && problem->solve(rate, kLastWeight, kLastWeight);
+    Timing timing{problem->spans(rate), kInfinite};
+    if (std::all_of(timing.spans.begin(), timing.spans.end(), goes_forward)) {
+      timing.stretch = prove(course, timing.spans, kProofSlack).stretch();
+      stretch_time(timing.spans, timing.stretch * kMargin);
+      if (best.spans.empty() || total_duration(timing.spans) < total_duration(best.spans)) {
+        best = timing;
+      }
+    }
+    if (timing.stretch <= kGoodEnough || pass == kMostPasses || !solved) return best;
+    // Where a correction does not help enough, cells are too long.
+    grid = refine(grid, too_coarse(course, problem->spans(rate)), rate);
+    problem.emplace(course, grid);
+    problem->make_feasible(rate, 0);
+    solved = problem->solve(rate, kFirstWeight, kFirstWeight);
   }
 }
 
+/// Seven phases under bounds that hold all along the section.
+std::vector<TimedSpan> slowest(const Course& course, const JointLimits& limits) {
+  const JointPath path = course.in_one_scale();
+  // The ceilings are bounds already, so proof can only shorten what they give.
+  auto spans = seven_phases(path, within_range(uniform_ceilings(path, limits), path, limits));
+  stretch_time(spans, std::min(1.0, kMargin * prove(course, spans, kProofSlack).stretch()));
+  return spans;
+}
+
 }  // namespace
+}  // namespace path_timing
 
 std::vector<TrajectoryPiece> parameterize(const JointPath& path, const JointLimits& limits) {
   using namespace path_timing;
   require_valid(path, limits);
-  if (const auto ceilings = path_timing::straight_ceilings(path, limits)) {
+  const Course course(path, limits);
+  if (const auto ceilings = straight_ceilings(path, limits)) {
     auto spans = seven_phases(path, within_range(*ceilings, path, limits));
-    stretch_time(spans, prove(path, limits, spans, kProofSlack).stretch() * kMargin);
+    stretch_time(spans, prove(course, spans, kExact).stretch() * kMargin);
     return to_pieces(path, spans);
   }
-  // The ceilings are bounds already, so proof can only shorten what they give.
-  auto spans = seven_phases(path, within_range(uniform_ceilings(path, limits), path, limits));
-  stretch_time(spans, std::min(1.0, kMargin * prove(path, limits, spans, kProofSlack).stretch()));
-  auto quick = quickest(path, limits);
-  if (!quick.empty() && total_duration(quick) < total_duration(spans)) spans = std::move(quick);
+  Timing quick = quickest(course);
+  const double duration = total_duration(quick.spans);
+  if (quick.stretch <= kGoodEnough && in_range(duration)) {
+    return to_pieces(path, quick.spans);
+  }
+  auto spans = slowest(course, limits);
+  if (std::isfinite(quick.stretch) && duration < total_duration(spans)) {
+    spans = std::move(quick.spans);
+  }
   return to_pieces(path, spans);
 }
 

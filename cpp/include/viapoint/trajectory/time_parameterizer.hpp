@@ -11,7 +11,8 @@
 
 namespace viapoint {
 
-/// @param path   one section, C² inside, at rest at both ends
+/// @param path   one section, C² inside but for a factor on s where pieces meet, at rest at both
+///               ends
 /// @param limits velocity, acceleration and jerk; piece.scale, rate_limit and rate_change_limit
 ///               apply on top
 /// @returns pieces from rest to rest with every share <= 1 + 1e-9, proven by certify(); each piece
@@ -22,8 +23,8 @@ namespace viapoint {
 ///         1e-40 s or more than 1e40 s; (kZeroLength) where no joint moves; (kBadLimits)
 /// A straight section gets the exact seven phases. Any other is optimised over ṡ² along the path
 /// (Verscheure et al. 2009, with jerk by the convex-concave procedure) and ends within about two
-/// per cent of the quickest; where the optimiser does not beat the seven-phase move under bounds
-/// that hold all along the section, that move is returned. Real-time: not. Cost: linear in pieces.
+/// per cent of the quickest; where the optimiser gets nowhere, the seven-phase move under bounds
+/// that hold all along the section is returned. Real-time: not. Cost: linear in pieces.
 [[nodiscard]] std::vector<TrajectoryPiece> parameterize(const JointPath& path,
                                                         const JointLimits& limits);
 
