@@ -2,35 +2,52 @@
 
 Subjects: ``tick`` (one cycle of the interpolator), ``plan`` (planning a move), ``certificate``
 (proving a motion), all three in C++ by viapoint-bench; ``sample`` (states of a motion into numpy
-arrays) in Python. Each has its place in tools/benches.
+arrays) in Python; ``profiles`` (state to state) beside Ruckig. Each has its place in tools/benches.
 """
 
 import argparse
+import datetime
 import json
 import sys
 from pathlib import Path
 
-from benches import core, sampling, tables
+from benches import core, profiles, sampling, tables
 from benches.machine import ROOT, machine
 from benches.tables import Row
 
-SUBJECTS = (*core.SUBJECTS, "sample")
+SUBJECTS = (*core.SUBJECTS, "sample", "profiles")
 
 
-def measure(subject: str, options: argparse.Namespace) -> list[Row]:
-    """Measure one subject."""
+def measure(subject: str, options: argparse.Namespace) -> tuple[list[Row], list[Row]]:
+    """Measure one subject.
+
+    Returns
+    -------
+    figures, differences : list of Row
+        What is shown, and the cases in which a peer gave another answer, which are only kept.
+    """
     if subject in core.SUBJECTS:
-        return core.measure(options.program, subject, quick=options.quick)
-    return sampling.measure(quick=options.quick)
+        return core.measure(options.program, subject, quick=options.quick), []
+    if subject == "sample":
+        return sampling.measure(quick=options.quick), []
+    if options.problems:
+        return profiles.measure_sweep(options.program.parent, options.problems), []
+    return profiles.measure(options.program.parent, quick=options.quick)
 
 
-def main(arguments: list[str]) -> int:
-    """Measure what was asked for and print it."""
+def parse(arguments: list[str]) -> argparse.Namespace:
+    """Read the command line."""
     parser = argparse.ArgumentParser(prog="./tools/bench", description=__doc__)
     parser.add_argument("subjects", nargs="*", metavar="SUBJECT", help=", ".join(SUBJECTS))
     parser.add_argument("--quick", action="store_true", help="fewer repetitions, rougher figures")
     parser.add_argument("--markdown", action="store_true", help="tables for a document")
     parser.add_argument("--json", type=Path, metavar="FILE", help="also write every figure there")
+    parser.add_argument(
+        "--problems",
+        type=int,
+        metavar="N",
+        help="profiles: instead of the tables, solve and judge that many problems",
+    )
     parser.add_argument(
         "--program",
         type=Path,
@@ -40,19 +57,37 @@ def main(arguments: list[str]) -> int:
     options = parser.parse_args(arguments)
     if unknown := [name for name in options.subjects if name not in SUBJECTS]:
         parser.error(f"no subject {', '.join(unknown)}; there are {', '.join(SUBJECTS)}")
+    if options.problems is not None and (options.problems < 1 or options.subjects != ["profiles"]):
+        parser.error("--problems goes with profiles alone, and is at least 1")
+    return options
 
+
+def main(arguments: list[str]) -> int:
+    """Measure what was asked for and print it."""
+    options = parse(arguments)
+    subjects = options.subjects or SUBJECTS
     about = machine()
+    if "profiles" in subjects and not options.problems:
+        about |= profiles.versions()
     for key, value in about.items():
         print(f"{key + ':':<11} {value}")
     lay_out = tables.markdown if options.markdown else tables.table
     figures: list[Row] = []
-    for subject in options.subjects or SUBJECTS:
-        rows = measure(subject, options)
-        print(f"\n{subject}\n{lay_out(rows)}", flush=True)
+    differences: list[Row] = []
+    for subject in subjects:
+        rows, others = measure(subject, options)
+        for bench in dict.fromkeys(row["bench"] for row in rows):
+            print(
+                f"\n{bench}\n{lay_out([row for row in rows if row['bench'] == bench])}", flush=True
+            )
         figures += rows
+        differences += others
     if options.json:
-        text = json.dumps({"machine": about, "figures": figures}, indent=1)
-        options.json.write_text(text + "\n", encoding="utf-8")
+        about["date"] = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
+        record = {"machine": about, "figures": figures}
+        if differences:
+            record["differences"] = differences
+        options.json.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
     return 0
 
 

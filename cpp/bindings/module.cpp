@@ -13,4 +13,6 @@ PYBIND11_MODULE(_core, m) {
   bind_planning(m);
   bind_realtime(m);
   bind_profile(m);
+  auto profile = m.attr("profile").cast<pybind11::module_>();
+  bind_state_to_state(profile);
 }

@@ -12,6 +12,7 @@ import numpy.typing
 __all__: list[str] = [
     "AxisLaw",
     "BlendedLines",
+    "StateMotion",
     "Trapezoid",
     "bang_bang",
     "blended_lines",
@@ -24,6 +25,7 @@ __all__: list[str] = [
     "rest_to_rest",
     "slope_velocities",
     "spline_velocities",
+    "state_to_state",
     "via_cubics",
 ]
 
@@ -110,6 +112,54 @@ class BlendedLines:
     def linear_velocity(self) -> list[float]:
         """
         Signed, (k - 1,).
+        """
+
+class StateMotion:
+    """
+    A motion from state to state.
+    """
+    def at(
+        self, t: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]
+    ) -> tuple[
+        numpy.typing.NDArray[numpy.float64],
+        numpy.typing.NDArray[numpy.float64],
+        numpy.typing.NDArray[numpy.float64],
+        numpy.typing.NDArray[numpy.float64],
+    ]:
+        """
+        q, qd, qdd, qddd at t, () or (k,); times outside are refused.
+        """
+    def extremes(
+        self, derivative: typing.SupportsInt | typing.SupportsIndex
+    ) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Smallest value, its time, largest value, its time; (4, n).
+        """
+    def parts(
+        self, joint: typing.SupportsInt | typing.SupportsIndex
+    ) -> list[tuple[float, float, typing.Annotated[list[float], "FixedSize(4)"]]]:
+        """
+        (begin, end, coefficients of (t - begin)^k) of each phase of a joint.
+        """
+    @property
+    def duration(self) -> float:
+        """
+        [s]
+        """
+    @property
+    def durations(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Of each joint [s], (n,).
+        """
+    @property
+    def joints(self) -> int:
+        """
+        Number of joints.
+        """
+    @property
+    def scalar(self) -> bool:
+        """
+        True for one joint given by numbers.
         """
 
 def bang_bang(
@@ -226,6 +276,27 @@ def spline_velocities(
 ) -> list[float]:
     """
     Via velocities that make acceleration continuous.
+    """
+
+def state_to_state(
+    q0: numpy.typing.ArrayLike | None,
+    q1: numpy.typing.ArrayLike | None,
+    v0: numpy.typing.ArrayLike | None,
+    a0: numpy.typing.ArrayLike | None,
+    v1: numpy.typing.ArrayLike | None,
+    a1: numpy.typing.ArrayLike | None,
+    v_max: numpy.typing.ArrayLike | None,
+    a_max: numpy.typing.ArrayLike | None,
+    j_max: numpy.typing.ArrayLike | None,
+    v_min: numpy.typing.ArrayLike | None,
+    a_min: numpy.typing.ArrayLike | None,
+    j_min: numpy.typing.ArrayLike | None,
+    sync: numpy.typing.ArrayLike | None,
+    least_duration: numpy.typing.ArrayLike | None,
+    cycle: numpy.typing.ArrayLike | None,
+) -> StateMotion:
+    """
+    The quickest motion from state to state, or with q1 None to a velocity.
     """
 
 def via_cubics(
