@@ -30,6 +30,7 @@ from ._law import (
     point_columns,
     values_by_axis,
 )
+from ._state_to_state import StateMotion, StateSamples, state_to_state
 from .errors import BadArgumentError
 
 __all__ = [
@@ -38,6 +39,8 @@ __all__ = [
     "Law",
     "Part",
     "State",
+    "StateMotion",
+    "StateSamples",
     "Trapezoid",
     "bang_bang",
     "blended_lines",
@@ -47,6 +50,7 @@ __all__ = [
     "quartic_transitions",
     "quintic",
     "rest_to_rest",
+    "state_to_state",
     "via_cubics",
     "via_velocities",
 ]

@@ -33,7 +33,13 @@ std::vector<JointVector> InverseKinematics::solve_all(const Eigen::Vector3d& pos
 std::vector<JointVector> InverseKinematics::solve_all(const Pose& pose_base_tool,
                                                       const JointVector& reference,
                                                       const Configuration& wish) const {
-  std::vector<JointVector> all = solve_all(pose_base_tool, reference);
+  return in_configuration(solve_all(pose_base_tool, reference), wish);
+}
+
+std::vector<JointVector> InverseKinematics::in_configuration(std::vector<JointVector> all,
+                                                             const Configuration& wish) const {
+  const bool any = wish.shoulder == 0 && wish.elbow == 0 && wish.wrist == 0;
+  if (any && wish.turns.size() == 0) return all;
   std::vector<std::string> others;
   std::erase_if(all, [&](const JointVector& q) {
     const Configuration found = configuration(q);

@@ -73,6 +73,10 @@ class InverseKinematics {
   [[nodiscard]] std::vector<JointVector> solve_all(const Pose& pose_base_tool,
                                                    const JointVector& reference,
                                                    const Configuration& wish) const;
+  /// Those of `solutions` that stand as `wish` says; the wish for any keeps them all. @throws as
+  /// above
+  [[nodiscard]] std::vector<JointVector> in_configuration(std::vector<JointVector> solutions,
+                                                          const Configuration& wish) const;
 
  protected:
   [[nodiscard]] virtual int joints() const = 0;

@@ -1,0 +1,114 @@
+// The proof of the closed forms over many seeded poses: the joints that made a pose are among its
+// branches, every branch gives the pose, and what is out of reach is refused by its distance.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "kinematics/arms.hpp"
+#include "viapoint/core/error.hpp"
+#include "viapoint/core/units.hpp"
+#include "viapoint/kinematics/inverse_kinematics.hpp"
+
+namespace viapoint {
+namespace {
+
+constexpr int kProblems = 10'000;
+
+::testing::AssertionResult gives(const RobotModel& robot, const JointVector& q, const Pose& pose,
+                                 double tolerance) {
+  const Pose reached = robot.forward().pose(q);
+  const double off = (reached.translation() - pose.translation()).norm();
+  const double turned = rotation_distance(reached.linear(), pose.linear());
+  if (off <= tolerance && turned <= tolerance && robot.limits().contains(q, 1e-12)) {
+    return ::testing::AssertionSuccess();
+  }
+  return ::testing::AssertionFailure() << q.transpose() << " is off by " << off << " m, " << turned
+                                       << " rad, or outside the limits";
+}
+
+TEST(ClosedForms, FindTheJointsThatMadeThePoseAmongExactBranches) {
+  for (const char* name : {"puma560", "ur5e", "scara", "rpp", "two_link"}) {
+    const RobotPtr robot = arm(name);
+    std::mt19937_64 generator(91);
+    for (int problem = 0; problem < kProblems; ++problem) {
+      SCOPED_TRACE(testing::Message() << name << " seed 91 problem " << problem);
+      const JointVector q = random_joints(*robot, generator);
+      const Pose pose = robot->forward().pose(q);
+      BranchSet branches;
+      ASSERT_EQ(robot->inverse().solve_branches(pose, q, branches), BranchStatus::kSolved);
+      double nearest = 1e300;
+      for (const JointVector& branch : branches) {
+        ASSERT_TRUE(gives(*robot, branch, pose, 1e-9));
+        nearest = std::min(nearest, (branch - q).lpNorm<Eigen::Infinity>());
+      }
+      ASSERT_LT(nearest, 1e-6);
+    }
+  }
+}
+
+TEST(ClosedForms, SolveNearEachSingularityTo1e7) {
+  // θ5 within 1e-12 … 1e-3 of alignment, the elbow stretched or folded as much, and both.
+  for (const char* name : {"puma560", "ur5e", "panda", "iiwa14"}) {
+    const RobotPtr robot = arm(name);
+    const Eigen::Index elbow = robot->joints() == 7 ? 3 : 2;
+    const Eigen::Index wrist = robot->joints() == 7 ? 5 : 4;
+    std::mt19937_64 generator(92);
+    for (int problem = 0; problem < 2000; ++problem) {
+      SCOPED_TRACE(testing::Message() << name << " seed 92 problem " << problem);
+      JointVector q = random_joints(*robot, generator);
+      const double offset = std::pow(10.0, -12.0 + problem % 10);
+      const double aligned = std::string(name) == "panda" ? kPi / 2.0 : 0.0;
+      if (problem % 3 != 0) q[wrist] = aligned + offset;
+      if (problem % 3 != 1) {
+        const double stretched =
+            std::string(name) == "puma560" ? -kPi / 2.0 + std::atan2(0.02, 0.433) : 0.0;
+        q[elbow] = stretched - offset;
+      }
+      if (!robot->limits().contains(q)) continue;
+      const Pose pose = robot->forward().pose(q);
+      JointVector found;
+      ASSERT_NO_THROW(found = robot->inverse().solve_near(pose, q));
+      ASSERT_TRUE(gives(*robot, found, pose, 1e-7));
+    }
+  }
+}
+
+TEST(ClosedForms, RefuseWhatIsOutOfReachByItsDistance) {
+  // The stretched arm, its wrist pushed on by 1 µm to 1 m along the line from shoulder to wrist.
+  for (const char* name : {"puma560", "ur5e"}) {
+    const RobotPtr robot = arm(name);
+    const bool puma = std::string(name) == "puma560";
+    std::mt19937_64 generator(93);
+    int refused = 0;
+    for (int problem = 0; problem < 2000; ++problem) {
+      SCOPED_TRACE(testing::Message() << name << " seed 93 problem " << problem);
+      JointVector q = random_joints(*robot, generator);
+      q[2] = puma ? kPi / 2.0 + std::atan2(0.02, 0.433) : 0.0;
+      const ChainFrames frames = robot->forward().frames(q);
+      // Across axis 2: from axis 2 to axis 4 (UR), or to the wrist centre (PUMA).
+      Eigen::Vector3d along = frames.origin[puma ? 5 : 3] - frames.origin[1];
+      along -= frames.axis[1].dot(along) * frames.axis[1];
+      const double beyond = std::pow(10.0, -6.0 + problem % 7);
+      Pose pose = frames.pose_base_tool;
+      pose.translation() += beyond * along.normalized();
+      try {
+        const JointVector found = robot->inverse().solve_near(pose, q);
+        ASSERT_TRUE(gives(*robot, found, pose, 1e-9));  // on another branch
+      } catch (const MotionError& error) {
+        if (error.code() == ErrorCode::kOutsideLimits) continue;
+        ASSERT_EQ(error.code(), ErrorCode::kUnreachable);
+        ASSERT_GT(*error.problem().value, 0.0);
+        ASSERT_LT(*error.problem().value, beyond + 1e-9);
+        if (puma) {
+          ASSERT_NEAR(*error.problem().value, beyond, 1e-9);
+        }
+        ++refused;
+      }
+    }
+    EXPECT_GT(refused, puma ? 1900 : 500);
+  }
+}
+
+}  // namespace
+}  // namespace viapoint
