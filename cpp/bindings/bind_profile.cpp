@@ -8,7 +8,11 @@
 
 #include "bindings.hpp"
 #include "viapoint/profile/axis_law.hpp"
+#include "viapoint/profile/axis_timing.hpp"
+#include "viapoint/profile/b_spline.hpp"
+#include "viapoint/profile/constrained_polynomial.hpp"
 #include "viapoint/profile/parabolic_blends.hpp"
+#include "viapoint/profile/pseudo_via_points.hpp"
 #include "viapoint/profile/quartic_transition.hpp"
 #include "viapoint/profile/trapezoid.hpp"
 #include "viapoint/profile/via_cubics.hpp"
@@ -43,10 +47,25 @@ std::array<double, 4> extremes(const AxisLaw& law, int derivative) {
   return {found.low, found.low_time, found.high, found.high_time};
 }
 
-std::vector<std::tuple<double, double, std::array<double, 6>>> parts(const AxisLaw& law) {
-  std::vector<std::tuple<double, double, std::array<double, 6>>> all;
+std::vector<std::tuple<double, double, Polynomial::Coefficients>> parts(const AxisLaw& law) {
+  std::vector<std::tuple<double, double, Polynomial::Coefficients>> all;
   for (const Polynomial& part : law.parts()) all.emplace_back(part.t0, part.t1, part.c);
   return all;
+}
+
+AxisLaw polynomial(const std::vector<std::tuple<double, int, double>>& conditions) {
+  std::vector<Condition> all;
+  for (const auto& [t, derivative, value] : conditions) all.push_back({t, derivative, value});
+  return AxisLaw({constrained_polynomial(all)});
+}
+
+PseudoViaPoints pseudo_points(const Array& points, const Array& durations,
+                              const std::vector<std::tuple<std::size_t, double, double>>& through) {
+  std::vector<ThroughPoint> all;
+  for (const auto& [index, velocity, half_gap] : through) {
+    all.push_back({index, velocity, half_gap});
+  }
+  return pseudo_via_points(values_of(points), values_of(durations), all);
 }
 
 Trapezoid any_lspb(double q0, double q1, double duration, std::optional<double> velocity,
@@ -64,7 +83,17 @@ void bind_classes(py::module_& m) {
            "q and its three derivatives at times (k,), (k, 4); times outside are refused.")
       .def("extremes", &extremes, py::arg("derivative"),
            "Smallest value, its time, largest value, its time, of derivative 0 to 3.")
-      .def("parts", &parts, "(t0, t1, coefficients of (t - t0)^k) of each polynomial.");
+      .def("parts", &parts, "(t0, t1, coefficients of (t - t0)^k) of each polynomial.")
+      .def("delayed", &delayed, py::arg("seconds"), "The same course, later by that.");
+  py::enum_<AxisTiming>(m, "AxisTiming", "When the axes of one motion move.")
+      .value("sequential", AxisTiming::kSequential)
+      .value("simultaneous", AxisTiming::kSimultaneous)
+      .value("synchronised", AxisTiming::kSynchronised);
+  py::class_<PseudoViaPoints>(m, "PseudoViaPoints", "Through points replaced by two each.")
+      .def_readonly("points", &PseudoViaPoints::points)
+      .def_readonly("durations", &PseudoViaPoints::durations, "[s]")
+      .def_readonly("source", &PseudoViaPoints::source, "The original index of each point.")
+      .def_readonly("middles", &PseudoViaPoints::middles, "Segments with a through point inside.");
   py::class_<Trapezoid>(m, "Trapezoid", "A trapezoid of velocity.")
       .def_readonly("law", &Trapezoid::law)
       .def_readonly("velocity", &Trapezoid::velocity, "Of the linear part, signed.")
@@ -98,8 +127,19 @@ void bind_point_to_point(py::module_& m) {
   m.def("lspb", &any_lspb, py::arg("q0"), py::arg("q1"), py::arg("duration"),
         py::arg("velocity") = py::none(), py::arg("blend_time") = py::none(),
         "Linear segment with parabolic blends, by velocity, by blend time, or neither.");
+  m.def("polynomial", &polynomial, py::arg("conditions"),
+        "The polynomial of least degree that meets conditions (time, derivative, value).");
   m.def("bang_bang", &bang_bang, py::arg("q0"), py::arg("q1"), py::arg("acceleration"),
         "The quickest move under an acceleration limit.");
+  m.def("trapezoid", &quickest_trapezoid, py::arg("q0"), py::arg("q1"), py::arg("velocity"),
+        py::arg("acceleration"), "The quickest move under velocity and acceleration limits.");
+  m.def("resting", &resting, py::arg("q"), py::arg("t0"), py::arg("t1"), "At rest at q.");
+  m.def(
+      "timed_together",
+      [](const std::vector<AxisLaw>& laws, AxisTiming timing) {
+        return timed_together(laws, timing);
+      },
+      py::arg("laws"), py::arg("timing"), "Several laws on one clock.");
   m.def(
       "rest_to_rest",
       [](double q0, double q1, double velocity, double acceleration, double jerk) {
@@ -134,11 +174,29 @@ void bind_through_points(py::module_& m) {
       py::arg("points"), py::arg("durations"), py::arg("first"), py::arg("last"),
       "Via velocities that make acceleration continuous.");
   m.def(
+      "natural_spline_velocities",
+      [](const Array& points, const Array& durations) {
+        return natural_spline_velocities(values_of(points), values_of(durations));
+      },
+      py::arg("points"), py::arg("durations"), "The same with no acceleration at both ends.");
+  m.def(
+      "periodic_spline_velocities",
+      [](const Array& points, const Array& durations) {
+        return periodic_spline_velocities(values_of(points), values_of(durations));
+      },
+      py::arg("points"), py::arg("durations"), "The same with ends that go over into each other.");
+}
+
+void bind_lines(py::module_& m) {
+  m.def(
       "blended_lines",
-      [](const Array& points, const Array& durations, const Array& accelerations) {
-        return blended_lines(values_of(points), values_of(durations), values_of(accelerations));
+      [](const Array& points, const Array& durations, const Array& accelerations,
+         const std::vector<std::size_t>& middles) {
+        return blended_lines(values_of(points), values_of(durations), values_of(accelerations),
+                             middles);
       },
       py::arg("points"), py::arg("durations"), py::arg("accelerations"),
+      py::arg("straight_at_middle") = std::vector<std::size_t>{},
       "Linear segments with parabolic blends, durations given.");
   m.def(
       "durations_at_speed",
@@ -157,6 +215,34 @@ void bind_through_points(py::module_& m) {
       },
       py::arg("points"), py::arg("durations"), py::arg("t_acc"),
       "Lines through timed points with quartic transitions.");
+  m.def("pseudo_via_points", &pseudo_points, py::arg("points"), py::arg("durations"),
+        py::arg("through"), "Two points for every through point (index, velocity, half gap).");
+}
+
+void bind_control_points(py::module_& m) {
+  m.def(
+      "bezier",
+      [](const Array& points, double t0, double t1) { return bezier(values_of(points), t0, t1); },
+      py::arg("points"), py::arg("t0"), py::arg("t1"), "The Bézier law of control points.");
+  m.def(
+      "b_spline",
+      [](const Array& points, const Array& knots, int degree) {
+        return b_spline(values_of(points), values_of(knots), degree);
+      },
+      py::arg("points"), py::arg("knots"), py::arg("degree"), "The B-spline of control points.");
+  m.def("clamped_knots", &clamped_knots, py::arg("points"), py::arg("degree"), py::arg("t0"),
+        py::arg("t1"), "Knots with equal spans and both ends degree + 1 times.");
+  m.def(
+      "spline_through",
+      [](const Array& points, const Array& durations, int degree, double v0, double v1, double a0,
+         double a1) {
+        const InterpolatingSpline spline =
+            spline_through(values_of(points), values_of(durations), degree, {0.0, v0, a0, 0.0},
+                           {0.0, v1, a1, 0.0});
+        return b_spline(spline.control_points, spline.knots, degree);
+      },
+      py::arg("points"), py::arg("durations"), py::arg("degree"), py::arg("v0"), py::arg("v1"),
+      py::arg("a0"), py::arg("a1"), "The B-spline through points.");
 }
 
 }  // namespace
@@ -167,4 +253,6 @@ void bind_profile(pybind11::module_& m) {
   viapoint::python::bind_classes(profile);
   viapoint::python::bind_point_to_point(profile);
   viapoint::python::bind_through_points(profile);
+  viapoint::python::bind_lines(profile);
+  viapoint::python::bind_control_points(profile);
 }

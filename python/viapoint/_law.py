@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from typing import NamedTuple, TypeVar
+import os
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
 from . import _core
-from ._arguments import ArrayLike, Vector, numbers_of
-from .errors import BadArgumentError, MotionError
+from ._arguments import ArrayLike, Vector, integer, number, numbers_of
+from .errors import BadArgumentError
 
 AxisLaw = _core.profile.AxisLaw
-Made = TypeVar("Made")
 
 
 class State(NamedTuple):
@@ -34,7 +34,10 @@ class Extremes(NamedTuple):
 
 
 class Part(NamedTuple):
-    """One polynomial of a law: the sum of ``coefficients[k] * (t - start)**k``."""
+    """One polynomial of a law: the sum of ``coefficients[k] * (t - start)**k``.
+
+    There are six coefficients, or more where the degree is above five.
+    """
 
     start: float
     end: float
@@ -91,6 +94,9 @@ class Law:
     def extremes(self, derivative: int = 0) -> Extremes:
         """Smallest and largest value over the whole law, found exactly and not on samples.
 
+        They lie at the ends of the law's polynomials and at the real roots of the next derivative
+        inside them.
+
         Parameters
         ----------
         derivative : int
@@ -101,22 +107,91 @@ class Law:
         BadArgumentError
             Another derivative.
         """
-        rows = np.array([axis.extremes(derivative) for axis in self._axes])
+        order = integer(derivative, "derivative", 0, 3)
+        rows = np.array([axis.extremes(order) for axis in self._axes])
         low, low_time, high, high_time = (rows[:, k].reshape(self.shape) for k in range(4))
         return Extremes(low, low_time, high, high_time)
 
+    def starting_at(self, t0: float) -> Law:
+        """Return the same course begun at another time.
+
+        Parameters
+        ----------
+        t0 : float
+            When it begins [s].
+
+        Raises
+        ------
+        BadArgumentError
+            NaN or infinity, or a time so far from 0 that a clock of doubles cannot tell the law's
+            parts apart.
+        """
+        later = number(t0, "t0", "s") - self.start
+        return Law([axis.delayed(later) for axis in self._axes], self.shape)
+
     def parts(self, axis: int = 0) -> list[Part]:
-        """Return the polynomials of one axis, in order of time."""
+        """Return the polynomials of one axis, in order of time.
+
+        Raises
+        ------
+        BadArgumentError
+            No such axis.
+        """
+        index = integer(axis, "axis", 0, len(self._axes) - 1)
         return [
-            Part(start, end, np.array(coefficients))
-            for start, end, coefficients in self._axes[axis].parts()
+            Part(start, end, _without_high_zeros(np.array(coefficients)))
+            for start, end, coefficients in self._axes[index].parts()
         ]
+
+    def plot(
+        self,
+        path: str | os.PathLike[str],
+        *,
+        title: str = "",
+        unit: str = "rad",
+        names: Sequence[str] | None = None,
+        points: tuple[ArrayLike, ArrayLike] | None = None,
+        limits: Mapping[str, float] | None = None,
+    ) -> None:
+        """Draw position, velocity, acceleration and jerk over time, with their exact extremes.
+
+        Parameters
+        ----------
+        path : str or path-like
+            The picture: .png, .svg or .pdf.
+        title : str
+            Above it.
+        unit : str
+            Of the positions, for the labels.
+        names : sequence of str, optional
+            One an axis, for the legend; by default the axes' numbers.
+        points : (times (k,), positions (k,) or (k, n)), optional
+            Marked in the position's panel: via points or control points.
+        limits : mapping, optional
+            Of ``"velocity"``, ``"acceleration"`` or ``"jerk"``, drawn both ways.
+
+        Raises
+        ------
+        BadArgumentError
+            Another ending, sizes that do not fit, an unknown limit.
+        FileError
+            The file cannot be written.
+        """
+        from ._law_plot import Marks, save_law_plot
+
+        save_law_plot(self, path, title, Marks(unit, names, points, limits or {}))
 
     def __repr__(self) -> str:
         """Name the kind, the axes and the time."""
         return (
             f"<{type(self).__name__} of {len(self._axes)} axes, {self.start:g} to {self.end:g} s>"
         )
+
+
+def _without_high_zeros(coefficients: Vector) -> Vector:
+    """Keep at least the six of a quintic, so that the parts of a law stack."""
+    top = int(np.flatnonzero(coefficients)[-1]) if coefficients.any() else 0
+    return coefficients[: max(6, top + 1)]
 
 
 class Trapezoid(Law):
@@ -129,21 +204,33 @@ class Trapezoid(Law):
     acceleration : ndarray, () or (n,)
         Of the first blend, signed [1/s²].
     blend_time : ndarray, () or (n,)
-        Of each of the two blends [s].
+        Of each of the two blends [s]; 0 for an axis that does not move.
     """
 
-    def __init__(self, axes: Sequence[_core.profile.Trapezoid], shape: tuple[int, ...]) -> None:
-        super().__init__([axis.law for axis in axes], shape)
-        self.velocity = np.array([axis.velocity for axis in axes]).reshape(shape)
-        self.acceleration = np.array([axis.acceleration for axis in axes]).reshape(shape)
-        self.blend_time = np.array([axis.blend_time for axis in axes]).reshape(shape)
+    def __init__(
+        self,
+        axes: Sequence[AxisLaw],
+        shape: tuple[int, ...],
+        numbers: Sequence[tuple[float, float, float]],
+    ) -> None:
+        super().__init__(axes, shape)
+        velocity, acceleration, blend_time = np.array(numbers).T
+        self.velocity = velocity.reshape(shape)
+        self.acceleration = acceleration.reshape(shape)
+        self.blend_time = blend_time.reshape(shape)
 
 
 class BlendedLines(Law):
     """Linear segments with a parabolic blend at each of k points.
 
+    Where points are gone through, each of them counts as its two pseudo via points.
+
     Attributes
     ----------
+    points : ndarray, (k,) or (k, n)
+        That the lines aim at.
+    point_times : ndarray, (k,)
+        [s]
     durations : ndarray, (k - 1,)
         From point to point [s].
     blend_acceleration : ndarray, (k,) or (k, n)
@@ -156,99 +243,22 @@ class BlendedLines(Law):
         [s]
     """
 
-    def __init__(self, axes: Sequence[_core.profile.BlendedLines], shape: tuple[int, ...]) -> None:
+    def __init__(
+        self,
+        axes: Sequence[_core.profile.BlendedLines],
+        shape: tuple[int, ...],
+        points: Vector,
+    ) -> None:
         super().__init__([axis.law for axis in axes], shape)
 
         def table(columns: list[list[float]]) -> Vector:
             rows = np.array(columns).T
             return rows.reshape(rows.shape[:1] + shape)
 
+        self.points = points
         self.durations = np.array(axes[0].durations)
+        self.point_times = np.concatenate([[0.0], np.cumsum(self.durations)])
         self.blend_acceleration = table([axis.blend_acceleration for axis in axes])
         self.blend_time = table([axis.blend_time for axis in axes])
         self.linear_velocity = table([axis.linear_velocity for axis in axes])
         self.linear_time = table([axis.linear_time for axis in axes])
-
-
-def for_each_axis(shape: tuple[int, ...], make: Callable[[int], Made]) -> list[Made]:
-    """Call ``make(axis)`` for every axis; a refusal says which axis it is about.
-
-    Raises
-    ------
-    MotionError
-        As raised by `make`, with ``joint`` set where there are several axes.
-    """
-    made = []
-    for axis in range(shape[0] if shape else 1):
-        try:
-            made.append(make(axis))
-        except MotionError as error:
-            if not shape:
-                raise
-            raise type(error)(
-                f"axis {axis}: {error.message}",
-                ways_out=error.ways_out,
-                joint=axis,
-                value=error.value,
-                limit=error.limit,
-            ) from None
-    return made
-
-
-def boundary_values(**values: ArrayLike) -> tuple[tuple[int, ...], dict[str, Vector]]:
-    """Bring boundary values to one shape, () or (n,), and return it with them, each (n,).
-
-    Raises
-    ------
-    BadArgumentError
-        Shapes that do not go together, more than one dimension, no axis, NaN.
-    """
-    arrays = {name: numbers_of(value, name) for name, value in values.items()}
-    for name, array in arrays.items():
-        if array.ndim > 1 or array.size == 0:
-            raise BadArgumentError(f"{name} has the shape {array.shape}; it must be () or (n,).")
-    try:
-        together = np.broadcast_arrays(*arrays.values())
-    except ValueError:
-        shapes = ", ".join(f"{name} {array.shape}" for name, array in arrays.items())
-        raise BadArgumentError(
-            f"the shapes {shapes} do not go together; give every value once, or once an axis."
-        ) from None
-    return together[0].shape, {
-        name: np.atleast_1d(array) for name, array in zip(arrays, together, strict=True)
-    }
-
-
-def point_columns(points: ArrayLike, name: str = "points") -> tuple[tuple[int, ...], Vector]:
-    """Return the shape of one point, () or (n,), and the points as (k, n).
-
-    Raises
-    ------
-    BadArgumentError
-        Not (k,) or (k, n) finite numbers.
-    """
-    array = numbers_of(points, name)
-    if array.ndim not in (1, 2) or array.size == 0:
-        raise BadArgumentError(f"{name} has the shape {array.shape}; it must be (k,) or (k, n).")
-    shape: tuple[int, ...] = array.shape[1:]
-    return shape, array.reshape(array.shape[0], -1)
-
-
-def values_by_axis(value: ArrayLike, name: str, shape: tuple[int, ...], rows: int) -> list[Vector]:
-    """Return for each axis what the core takes: (1,), or (rows,).
-
-    Raises
-    ------
-    BadArgumentError
-        Neither one value, nor one an axis, nor one an axis and row.
-    """
-    array = numbers_of(value, name)
-    axes = shape[0] if shape else 1
-    if array.ndim == 0:
-        return [array.reshape(1)] * axes
-    if array.shape == (rows, *shape):
-        return list(array.reshape(rows, axes).T)
-    if shape and array.shape == shape:
-        return list(array.reshape(axes, 1))
-    allowed = "(), " + (f"{shape} or " if shape else "") + f"{(rows, *shape)}"
-    raise BadArgumentError(f"{name} has the shape {array.shape}; it must be {allowed}.")

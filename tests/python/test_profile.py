@@ -127,6 +127,16 @@ def laws():
     yield vp.profile.blended_lines(points, [1.0, 0.7, 1.2], acceleration=60.0)
     yield vp.profile.parabolic_blend([0.0, 1.0], [1.0, 0.0], [0.0, 0.0], 1.0, 0.8, 0.3)
     yield vp.profile.quartic_transitions(points, [1.0, 0.7, 1.2], 0.2)
+    yield vp.profile.trapezoid([0.0, 1.0], [2.0, 0.5], v_max=1.0, a_max=3.0)
+    moves = ([0.0, 1.0], [2.0, 0.5])
+    yield vp.profile.rest_to_rest(*moves, v_max=1, a_max=3, j_max=20, timing="sequential")
+    yield vp.profile.polynomial([(0.0, 0, 0.0), (0.5, 0, 1.0), (1.0, 1, 0.0), (2.0, 0, -1.0)])
+    yield vp.profile.via_cubics(points, [1.0, 0.7, 1.2], "natural")
+    yield vp.profile.via_cubics(points, [1.0, 0.7, 1.2], "periodic")
+    yield vp.profile.blended_lines(points, [1.0, 0.7, 1.2], acceleration=90.0, through={1: None})
+    yield vp.profile.bezier(points, 2.0)
+    yield vp.profile.b_spline(points, 2.0, degree=2)
+    yield vp.profile.b_spline_through(points, [1.0, 0.7, 1.2])
 
 
 @pytest.mark.parametrize("law", list(laws()), ids=repr)
@@ -171,36 +181,126 @@ def test_rest_to_rest_keeps_its_limits_and_arrives():
             assert max(-found.low, found.high) <= limit * (1 + 1e-10)
 
 
-def test_blended_lines_at_speed_take_the_time_of_the_slowest_axis():
-    points = [[0.0, 0.0], [1.0, 2.0], [3.0, 2.0]]
-    law = vp.profile.blended_lines(points, speed=[1.0, 0.5], acceleration=[10.0, 20.0])
-    assert law.durations == pytest.approx([2.0 / 0.5 + 0.5 * 0.5 / 20.0, 2.0 + 0.5 * 1.0 / 10.0])
-    assert law.linear_velocity[0, 1] == pytest.approx(0.5)
-    assert law.linear_velocity[1, 0] == pytest.approx(1.0)
-    assert np.all(np.abs(law.linear_velocity) <= [1.0 + 1e-12, 0.5 + 1e-12])
-    np.testing.assert_allclose(law.at(law.end).q, points[-1], atol=1e-12)
-    assert law.blend_time.shape == (3, 2)
-
-
-def test_an_acceleration_too_small_is_refused_with_the_least_that_works():
-    with pytest.raises(vp.errors.BadArgumentError, match="at least") as refusal:
-        vp.profile.blended_lines([10, 35, 25, 10], [2, 1, 3], acceleration=5)
-    least = refusal.value.limit
-    vp.profile.blended_lines([10, 35, 25, 10], [2, 1, 3], acceleration=least)
-    with pytest.raises(vp.errors.BadArgumentError):
-        vp.profile.blended_lines([10, 35, 25, 10], [2, 1, 3], acceleration=0.999 * least)
-
-
 def test_a_refusal_of_one_axis_names_it():
     with pytest.raises(vp.errors.BadArgumentError, match="axis 1") as refusal:
         vp.profile.lspb([0.0, 0.0], 1.0, 18.0, velocity=[0.06, 0.02])
     assert refusal.value.joint == 1
 
 
+def test_polynomial_of_the_conditions_of_a_quintic_is_the_quintic():
+    conditions = [(1.0, 0, [0.0, 1.0]), (3.0, 0, [2.0, 0.5]), (1.0, 1, 0.3), (3.0, 1, 0.0)]
+    law = vp.profile.polynomial([*conditions, (1.0, 2, -1.0), (3.0, 2, [0.0, 2.0])])
+    quintic = vp.profile.quintic(
+        [0.0, 1.0], [2.0, 0.5], 2.0, v0=0.3, a0=-1.0, a1=[0.0, 2.0], t0=1.0
+    )
+    for axis in range(2):
+        np.testing.assert_allclose(coefficients(law, axis), coefficients(quintic, axis), atol=1e-12)
+
+
+def test_polynomial_of_degree_seven_has_eight_coefficients():
+    still = [(t, k, 0.0) for t in (0.0, 1.0) for k in (1, 2, 3)]
+    law = vp.profile.polynomial([(0.0, 0, 0.0), (1.0, 0, 1.0), *still])
+    np.testing.assert_allclose(coefficients(law), [0, 0, 0, 0, 35, -84, 70, -20], atol=1e-12)
+
+
+@pytest.mark.parametrize("timing", ["synchronised", "simultaneous", "sequential"])
+def test_axes_come_together_as_the_timing_says(timing):
+    q0, q1, a = [0.0, 0.5, 1.0], [1.0, 0.5, 0.5], 2.0
+    law = vp.profile.bang_bang(q0, q1, a, timing=timing)
+    alone = [vp.profile.bang_bang(0.0, 1.0, a), None, vp.profile.bang_bang(1.0, 0.5, a)]
+    total = alone[0].duration + (alone[2].duration if timing == "sequential" else 0.0)
+    assert law.duration == pytest.approx(total)
+    np.testing.assert_allclose(law.at(law.end).q, q1, atol=1e-12)
+    assert np.all(law.at(np.linspace(0.0, law.end, 50)).q[:, 1] == 0.5)  # it rests
+    assert law.blend_time[1] == law.velocity[1] == law.acceleration[1] == 0.0
+    assert law.velocity[2] == pytest.approx(law.extremes(1).low[2])
+    assert law.acceleration[2] == pytest.approx(law.extremes(2).low[2])
+    share = alone[2].duration / total if timing == "synchronised" else 1.0
+    assert law.extremes(2).low[2] == pytest.approx(-a * share**2)
+    if timing == "sequential":
+        assert np.all(law.at(0.5 * alone[0].duration).qd[1:] == 0.0)
+        assert law.at(law.end - 0.5 * alone[2].duration).qd[0] == 0.0
+
+
+def test_synchronised_laws_of_one_shape_make_a_straight_line():
+    laws = [vp.profile.quintic(0.0, 1.0, 1.0), vp.profile.quintic(0.5, -0.5, 2.0)]
+    law = vp.profile.together(laws)
+    q = law.at(np.linspace(0.0, 2.0, 101)).q
+    np.testing.assert_allclose(q[:, 1], 0.5 - q[:, 0], atol=1e-12)
+
+
+def test_a_limit_of_an_axis_that_rests_is_checked_too():
+    with pytest.raises(vp.errors.BadArgumentError, match="axis 1"):
+        vp.profile.trapezoid([0.0, 1.0], [1.0, 1.0], v_max=[1.0, -1.0], a_max=1.0)
+
+
+def test_a_law_can_begin_at_any_time():
+    law = vp.profile.lspb([0.0, 1.0], [2.0, -1.0], 3.0).starting_at(-7.0)
+    assert (law.start, law.end) == (-7.0, -4.0)
+    np.testing.assert_allclose(law.at(-4.0).q, [2.0, -1.0], atol=1e-12)
+    np.testing.assert_allclose(law.extremes(1).high_time[0], -6.0, atol=1e-12)
+
+
+def test_a_law_is_drawn_with_what_was_asked_for(tmp_path):
+    law = vp.profile.trapezoid([0.0, 1.0], [1.0, 0.5], v_max=1.0, a_max=2.0)
+    law.plot(
+        tmp_path / "law.png",
+        title="Two axes",
+        unit="m",
+        names=["x", "y"],
+        points=([0.0, law.end], [[0.0, 1.0], [1.0, 0.5]]),
+        limits={"velocity": 1.0, "acceleration": 2.0},
+    )
+    assert (tmp_path / "law.png").stat().st_size > 10_000
+    for wrong in (
+        {"names": ["x"]},
+        {"points": ([0.0], [[0.0]])},
+        {"limits": {"speed": 1.0}},
+        {"limits": {"velocity": -1.0}},
+    ):
+        with pytest.raises(vp.errors.BadArgumentError):
+            law.plot(tmp_path / "wrong.png", **wrong)
+    with pytest.raises(vp.errors.BadArgumentError, match=r"law\.txt"):
+        law.plot("law.txt")
+
+
 @pytest.mark.parametrize(
     "call",
     [
         lambda p: p.cubic(0.0, 1.0, 0.0),
+        lambda p: p.polynomial([]),
+        lambda p: p.polynomial(3.0),
+        lambda p: p.polynomial([(0.0, 0)]),
+        lambda p: p.polynomial([(0.0, 1, 0.0), (1.0, 1, 1.0)]),
+        lambda p: p.polynomial([(0.0, 0, 0.0), (1.0, 4, 1.0)]),
+        lambda p: p.polynomial([(0.0, 0, [0.0, 1.0]), (1.0, 0, [1.0, 2.0, 3.0])]),
+        lambda p: p.trapezoid([0.0, 1.0], [0.0, 1.0], v_max=1.0, a_max=1.0),
+        lambda p: p.trapezoid(0.0, 1.0, v_max=0.0, a_max=1.0),
+        lambda p: p.trapezoid(0.0, 1.0, v_max=1.0, a_max=1.0, timing="together"),
+        lambda p: p.together([]),
+        lambda p: p.together([p.cubic([0.0, 1.0], 1.0, 1.0)]),
+        lambda p: p.together([p.cubic(0.0, 1.0, 1.0), p.cubic(0.0, 1.0, 1.0, t0=1.0)]),
+        lambda p: p.together([p.cubic(0, 1, 1.0, v1=1), p.cubic(0, 1, 2.0)], "simultaneous"),
+        lambda p: p.cubic(0.0, 1.0, 1.0).starting_at(float("inf")),
+        lambda p: p.cubic(0.0, 1.0, 1.0).parts(1),
+        lambda p: p.via_velocities([0.0, 1.0], [1.0], "natural", first=1.0),
+        lambda p: p.via_velocities([0.0, 1.0], [1.0], first=[1.0, 2.0]),
+        lambda p: p.joint_velocities("arm", [[0.0]], [[0.0]]),
+        lambda p: p.joint_velocities(vp.load_robot("two_link"), [[0.0]], [[0.0, 0.0, 0.0]]),
+        lambda p: p.joint_velocities(vp.load_robot("two_link"), [[0.0, 1.0]], [[0.0, 0.0]]),
+        lambda p: p.blended_lines([0, 1, 0], [1, 1], acceleration=50, through={0: None}),
+        lambda p: p.blended_lines([0, 1, 0], [1, 1], acceleration=50, through=[1]),
+        lambda p: p.blended_lines([0, 1, 0], [1, 1], acceleration=50, through={1: [0, 1]}),
+        lambda p: p.blended_lines([0, 1], [1], acceleration=50, through={1: None}),
+        lambda p: p.blended_lines([0, 1, 0], [1, 1], acceleration=50, through={1: 0}, half_gap=1),
+        lambda p: p.bezier([0.0], 1.0),
+        lambda p: p.bezier(np.zeros(13), 1.0),
+        lambda p: p.b_spline([0.0, 1.0, 0.0], 1.0, degree=3),
+        lambda p: p.b_spline([0.0, 1.0, 0.0, 1.0]),
+        lambda p: p.b_spline([0.0, 1.0], knots=[0, 0, 1, 1], degree=1, t0=1.0),
+        lambda p: p.b_spline_through([0.0, 1.0], [1.0], degree=4),
+        lambda p: p.b_spline_through([0.0, 1.0], [1.0], degree=3, a0=1.0),
+        lambda p: p.b_spline_through([0.0, 1.0], [1.0], v0=[1.0, 2.0]),
         lambda p: p.cubic(0.0, float("nan"), 1.0),
         lambda p: p.quintic([0.0, 1.0], [0.0, 1.0, 2.0], 1.0),
         lambda p: p.quintic([], [], 1.0),

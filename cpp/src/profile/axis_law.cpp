@@ -5,12 +5,29 @@
 #include <utility>
 
 #include "profile/argument_check.hpp"
+#include "profile/constant_jerk.hpp"
 
 namespace viapoint {
 namespace {
 
 /// Share of the whole by which times may differ through rounding.
 constexpr double kTimeRounding = 1e-12;
+
+/// Beyond this a sum of terms may overflow.
+constexpr double kLargest = 1e307;
+
+/// No term of the part or of its derivatives may leave what doubles hold: then none is NaN.
+void require_representable(const Polynomial& part) {
+  Polynomial sizes{0.0, part.t1 - part.t0, part.c};
+  for (double& c : sizes.c) c = std::abs(c);
+  const AxisState worst = sizes.at(sizes.t1);
+  for (const double size : {worst.q, worst.qd, worst.qdd, worst.qddd}) {
+    if (size <= kLargest) continue;
+    refuse("the law would reach " + written(size) + " between " + written(part.t0) + " and " +
+               written(part.t1) + " s; position and derivatives must stay below 1e307",
+           size, kLargest, {"give values nearer to one another", "give more time"});
+  }
+}
 
 std::vector<Polynomial> parts_of(const JerkProfile& profile) {
   std::vector<Polynomial> parts;
@@ -21,7 +38,8 @@ std::vector<Polynomial> parts_of(const JerkProfile& profile) {
     const double end = t + profile.duration[phase];
     Polynomial part{0.0, profile.duration[phase], {}};
     part.c = {state.q, state.qd, 0.5 * state.qdd, profile.jerk[phase] / 6.0, 0.0, 0.0};
-    state = part.at(part.t1);  // from its own zero: end − t would have lost bits
+    // By the phase's own time: end − t would have lost bits.
+    state = advanced(state, profile.jerk[phase], profile.duration[phase]);
     part.t0 = t;
     part.t1 = end;
     parts.push_back(part);
@@ -47,6 +65,7 @@ AxisLaw::AxisLaw(std::vector<Polynomial> parts) : parts_(std::move(parts)) {
                  " s, but the one before ends at " + written(parts_[i - 1].t1) + " s",
              parts_[i].t0, parts_[i - 1].t1);
     }
+    require_representable(parts_[i]);
   }
 }
 

@@ -3,17 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "profile/constant_jerk.hpp"
+
 namespace viapoint {
 namespace {
-
-AxisState advanced(const AxisState& from, double jerk, double t) {
-  AxisState to;
-  to.qddd = jerk;
-  to.qdd = from.qdd + jerk * t;
-  to.qd = from.qd + t * (from.qdd + 0.5 * jerk * t);
-  to.q = from.q + t * (from.qd + t * (0.5 * from.qdd + jerk * t / 6.0));
-  return to;
-}
 
 /// Durations of a symmetric rest-to-rest move: jerk, constant acceleration, constant velocity.
 struct RampTimes {

@@ -11,10 +11,17 @@
 namespace viapoint {
 namespace {
 
+/// What a law of lines and blends is asked for, but for the accelerations.
+struct Request {
+  std::span<const double> points, durations;
+  std::span<const size_t> straight_at_middle;
+};
+
 /// The timing of lines and blends, all that the law is laid out from.
 struct Timing {
   std::vector<double> acceleration, blend, velocity, linear;
-  /// Smallest linear time as a share of its segment; −∞ where an end blend has no solution.
+  /// Smallest time left beside the blends as a share of its segment; −∞ where an end blend has no
+  /// solution.
   double least_room = std::numeric_limits<double>::infinity();
   size_t tightest = 0;
 };
@@ -31,8 +38,8 @@ double end_blend_time(double gap, double duration, double acceleration, int ends
   return 2.0 * std::abs(gap) / acceleration / (duration + std::sqrt(under));
 }
 
-Timing time_blends(std::span<const double> points, std::span<const double> durations,
-                   std::span<const double> magnitudes) {
+Timing time_blends(const Request& request, std::span<const double> magnitudes) {
+  const auto& [points, durations, straight_at_middle] = request;
   const size_t last = durations.size() - 1;
   const auto magnitude = [&](size_t i) { return magnitudes[magnitudes.size() == 1 ? 0 : i]; };
   Timing timing;
@@ -72,6 +79,9 @@ Timing time_blends(std::span<const double> points, std::span<const double> durat
     timing.linear.push_back(durations[i] - before - after);
     tighten(timing.linear.back() / durations[i], i);
   }
+  for (const size_t i : straight_at_middle) {
+    tighten(0.5 - 0.5 * std::max(timing.blend[i], timing.blend[i + 1]) / durations[i], i);
+  }
   return timing;
 }
 
@@ -80,11 +90,12 @@ constexpr double kRoomSlack = -1e-12;
 
 /// The least common acceleration that leaves no linear time negative. Coarse steps upwards from
 /// what the ends need find the first that works; halving closes in on it.
-double least_acceleration(std::span<const double> points, std::span<const double> durations) {
+double least_acceleration(const Request& request) {
+  const auto& [points, durations, straight_at_middle] = request;
   const auto works = [&](double a) {
-    return time_blends(points, durations, std::span(&a, 1)).least_room >= kRoomSlack;
+    return time_blends(request, std::span(&a, 1)).least_room >= kRoomSlack;
   };
-  double high = 0.0;
+  double high = std::numeric_limits<double>::min();  // steps from 0 would lead nowhere
   for (size_t i = 0; i < durations.size(); ++i) {
     high = std::max(high, std::abs(points[i + 1] - points[i]) / (durations[i] * durations[i]));
   }
@@ -108,15 +119,15 @@ void require_accelerations(size_t points, std::span<const double> accelerations)
          static_cast<double>(accelerations.size()), static_cast<double>(points));
 }
 
-[[noreturn]] void refuse_acceleration(const Timing& timing, std::span<const double> points,
-                                      std::span<const double> durations,
+[[noreturn]] void refuse_acceleration(const Timing& timing, const Request& request,
                                       std::span<const double> accelerations) {
   const double given = *std::min_element(accelerations.begin(), accelerations.end());
-  const double least = least_acceleration(points, durations);
+  const double least = least_acceleration(request);
+  const size_t i = timing.tightest;
   // Rounded up in the last digit shown, so that the number in the message works, too.
   refuse("an acceleration of " + written(given) + " leaves no linear part in segment " +
-             std::to_string(timing.tightest) + " (" + written(points[timing.tightest]) + " to " +
-             written(points[timing.tightest + 1]) + " in " + written(durations[timing.tightest]) +
+             std::to_string(i) + " (" + written(request.points[i]) + " to " +
+             written(request.points[i + 1]) + " in " + written(request.durations[i]) +
              " s); at least " + written(least * (1.0 + 1e-6)) + " is needed in every blend",
          given, least, {"give a larger acceleration", "give the segment more time"});
 }
@@ -147,15 +158,20 @@ AxisLaw lay_out(std::span<const double> points, std::span<const double> duration
 }  // namespace
 
 BlendedLines blended_lines(std::span<const double> points, std::span<const double> durations,
-                           std::span<const double> accelerations) {
+                           std::span<const double> accelerations,
+                           std::span<const size_t> straight_at_middle) {
   require_segments(points.size(), durations.size(), "durations");
   require_finite(points, "points");
   require_positive(durations, "durations");
   require_accelerations(points.size(), accelerations);
-  Timing timing = time_blends(points, durations, accelerations);
-  if (timing.least_room < kRoomSlack) {
-    refuse_acceleration(timing, points, durations, accelerations);
+  for (const size_t segment : straight_at_middle) {
+    if (segment < durations.size()) continue;
+    refuse("there is no segment " + std::to_string(segment) + " to be straight at its middle",
+           static_cast<double>(segment), static_cast<double>(durations.size() - 1));
   }
+  const Request request{points, durations, straight_at_middle};
+  Timing timing = time_blends(request, accelerations);
+  if (!(timing.least_room >= kRoomSlack)) refuse_acceleration(timing, request, accelerations);
   for (double& linear : timing.linear) linear = std::max(0.0, linear);
   return {lay_out(points, durations, timing),
           {durations.begin(), durations.end()},
@@ -195,18 +211,6 @@ std::vector<double> durations_at_speed(std::span<const double> points,
     durations.push_back(gap / speed + 0.5 * ends * speed / a);
   }
   return durations;
-}
-
-BlendedLines blended_lines_at_speed(std::span<const double> points, std::span<const double> speeds,
-                                    std::span<const double> accelerations) {
-  const std::vector<double> durations = durations_at_speed(points, speeds, accelerations);
-  for (size_t i = 0; i < durations.size(); ++i) {
-    if (durations[i] > 0.0) continue;
-    refuse("points " + std::to_string(i) + " and " + std::to_string(i + 1) +
-               " are equal, so no speed gives the segment between them a duration",
-           0.0, 0.0, {"leave one of them out", "give durations in place of speeds"});
-  }
-  return blended_lines(points, durations, accelerations);
 }
 
 AxisLaw parabolic_blend(double w0, double w1, double w2, double before, double after,

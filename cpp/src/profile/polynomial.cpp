@@ -34,25 +34,28 @@ double of_order(const AxisState& state, int derivative) {
 
 AxisState Polynomial::at(double t) const {
   const double x = t - t0;
-  AxisState state;
-  state.q = c[0] + x * (c[1] + x * (c[2] + x * (c[3] + x * (c[4] + x * c[5]))));
-  state.qd = c[1] + x * (2.0 * c[2] + x * (3.0 * c[3] + x * (4.0 * c[4] + x * 5.0 * c[5])));
-  state.qdd = 2.0 * c[2] + x * (6.0 * c[3] + x * (12.0 * c[4] + x * 20.0 * c[5]));
-  state.qddd = 6.0 * c[3] + x * (24.0 * c[4] + x * 60.0 * c[5]);
-  return state;
+  // Horner's scheme, and its own by which it yields q̇, q̈/2 and q⃛/6 as well.
+  double q = 0.0, first = 0.0, second = 0.0, third = 0.0;
+  for (auto k = c.rbegin(); k != c.rend(); ++k) {
+    third = third * x + second;
+    second = second * x + first;
+    first = first * x + q;
+    q = q * x + *k;
+  }
+  return {q, first, 2.0 * second, 6.0 * third};
 }
 
 Extremes Polynomial::extremes(int derivative) const {
   assert(derivative >= 0 && derivative <= 3);
   // The next derivative as a polynomial of x = (t − t0)/(t1 − t0), up to a positive factor.
   const double length = t1 - t0;
-  std::array<double, 6> slope{};
-  double power = 1.0;
-  for (int k = derivative + 1; k <= 5; ++k) {
-    double factor = 1.0;
-    for (int m = 0; m <= derivative; ++m) factor *= k - m;
-    slope[static_cast<size_t>(k - derivative - 1)] = factor * c[static_cast<size_t>(k)] * power;
-    power *= length;
+  Coefficients slope{};
+  for (int k = derivative + 1; k <= kMaxDegree; ++k) {
+    // Factor by factor, so that no power of a long or a short time stands alone.
+    double term = c[static_cast<size_t>(k)];
+    for (int m = 0; m <= derivative; ++m) term *= k - m;
+    for (int m = derivative; m < k; ++m) term *= length;
+    slope[static_cast<size_t>(k - derivative - 1)] = term;
   }
   const auto value = [&](double t) { return of_order(at(t), derivative); };
   Extremes found{value(t0), t0, value(t0), t0};
@@ -61,7 +64,7 @@ Extremes Polynomial::extremes(int derivative) const {
     if (q < found.low) found.low = q, found.low_time = t;
     if (q > found.high) found.high = q, found.high_time = t;
   };
-  const Roots roots = roots_in_unit(slope, 4 - derivative);
+  const Roots roots = roots_in_unit(slope, kMaxDegree - 1 - derivative);
   for (int i = 0; i < roots.count; ++i) look(t0 + length * roots.x[static_cast<size_t>(i)]);
   look(t1);
   return found;

@@ -5,14 +5,14 @@
 namespace viapoint {
 namespace {
 
-double value(const std::array<double, 6>& c, int degree, double x) {
+double value(const Polynomial::Coefficients& c, int degree, double x) {
   double sum = c[static_cast<size_t>(degree)];
   for (int k = degree - 1; k >= 0; --k) sum = sum * x + c[static_cast<size_t>(k)];
   return sum;
 }
 
-std::array<double, 6> derivative(const std::array<double, 6>& c, int degree) {
-  std::array<double, 6> d{};
+Polynomial::Coefficients derivative(const Polynomial::Coefficients& c, int degree) {
+  Polynomial::Coefficients d{};
   for (int k = 1; k <= degree; ++k) {
     d[static_cast<size_t>(k - 1)] = k * c[static_cast<size_t>(k)];
   }
@@ -20,7 +20,7 @@ std::array<double, 6> derivative(const std::array<double, 6>& c, int degree) {
 }
 
 /// The root between low and high, where the values have opposite signs.
-double bracketed_root(const std::array<double, 6>& c, const std::array<double, 6>& slope,
+double bracketed_root(const Polynomial::Coefficients& c, const Polynomial::Coefficients& slope,
                       int degree, double low, double high) {
   const bool rising = value(c, degree, low) < 0.0;
   double x = 0.5 * (low + high);
@@ -40,11 +40,11 @@ double bracketed_root(const std::array<double, 6>& c, const std::array<double, 6
 
 }  // namespace
 
-Roots roots_in_unit(const std::array<double, 6>& c, int degree) {
+Roots roots_in_unit(const Polynomial::Coefficients& c, int degree) {
   Roots roots;
   while (degree > 0 && c[static_cast<size_t>(degree)] == 0.0) --degree;
   if (degree == 0) return roots;
-  const std::array<double, 6> slope = derivative(c, degree);
+  const Polynomial::Coefficients slope = derivative(c, degree);
   Roots bends = roots_in_unit(slope, degree - 1);
   bends.add(1.0);
   double low = 0.0;

@@ -2,14 +2,15 @@
 /// Real roots of a small polynomial inside the unit interval.
 #pragma once
 
-#include <array>
 #include <cstddef>
+
+#include "viapoint/profile/polynomial.hpp"
 
 namespace viapoint {
 
-/// A few roots, in rising order.
+/// A few roots, in rising order: no more than there are coefficients.
 struct Roots {
-  std::array<double, 12> x{};
+  Polynomial::Coefficients x{};
   int count = 0;
 
   void add(double root) {
@@ -20,6 +21,6 @@ struct Roots {
 /// Roots of Σ c[k] x^k, k <= degree, in [0, 1] where it changes sign, and some where it only
 /// touches zero. Between neighbouring roots of the derivative the polynomial is monotone, so each
 /// sign change brackets one root, which is closed in on by Newton's steps kept in the bracket.
-[[nodiscard]] Roots roots_in_unit(const std::array<double, 6>& c, int degree);
+[[nodiscard]] Roots roots_in_unit(const Polynomial::Coefficients& c, int degree);
 
 }  // namespace viapoint

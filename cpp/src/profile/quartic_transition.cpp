@@ -15,11 +15,11 @@ constexpr double kTimeRounding = 1e-12;
 
 }  // namespace
 
-std::array<double, 6> quartic_transition(double from, double to, double duration, double t_acc) {
+Polynomial::Coefficients quartic_transition(double from, double to, double duration, double t_acc) {
   const double k = to * t_acc / duration + from;
   const double rate = 0.5 / t_acc;  // of h
   const double cube = rate * rate * rate;
-  return {from, -2.0 * from * rate, 0.0, 2.0 * k * cube, -k * cube * rate, 0.0};
+  return {from, -2.0 * from * rate, 0.0, 2.0 * k * cube, -k * cube * rate};
 }
 
 void check_transitions(size_t points, std::span<const double> durations, double t_acc) {

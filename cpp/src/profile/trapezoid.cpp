@@ -29,6 +29,12 @@ void require_move(double q0, double q1, double duration) {
   require_positive(duration, "duration");
 }
 
+void require_distance(double q0, double q1) {
+  require_finite(q0, "q0");
+  require_finite(q1, "q1");
+  if (q0 == q1) refuse("from " + written(q0) + " to itself there is nothing to move", 0.0, 0.0);
+}
+
 }  // namespace
 
 Trapezoid lspb(double q0, double q1, double duration) {
@@ -77,11 +83,19 @@ Trapezoid lspb_with_velocity(double q0, double q1, double duration, double veloc
   return trapezoid(q0, q1, duration, velocity, std::min(blend_time, 0.5 * duration));
 }
 
-Trapezoid bang_bang(double q0, double q1, double acceleration) {
-  require_finite(q0, "q0");
-  require_finite(q1, "q1");
+Trapezoid quickest_trapezoid(double q0, double q1, double velocity, double acceleration) {
+  require_positive(velocity, "velocity");
   require_positive(acceleration, "acceleration");
-  if (q0 == q1) refuse("from " + written(q0) + " to itself there is nothing to move", 0.0, 0.0);
+  require_distance(q0, q1);
+  const double ramp = velocity / acceleration;
+  const double gap = std::abs(q1 - q0);
+  if (!(velocity * ramp < gap)) return bang_bang(q0, q1, acceleration);
+  return trapezoid(q0, q1, gap / velocity + ramp, std::copysign(velocity, q1 - q0), ramp);
+}
+
+Trapezoid bang_bang(double q0, double q1, double acceleration) {
+  require_positive(acceleration, "acceleration");
+  require_distance(q0, q1);
   const double to_switch = std::sqrt(std::abs(q1 - q0) / acceleration);
   return trapezoid(q0, q1, 2.0 * to_switch, (q1 - q0) / to_switch, to_switch);
 }

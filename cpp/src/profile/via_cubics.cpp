@@ -21,6 +21,33 @@ std::vector<double> slopes_of(std::span<const double> points, std::span<const do
   return slopes;
 }
 
+/// A condition on the velocity at an end: v_end + share · v_next = value.
+struct EndCondition {
+  double share, value;
+};
+
+/// Equal q̈ on both sides of each inner point i, times T_{i−1} T_i / 2:
+///   T_i v_{i−1} + 2 (T_{i−1} + T_i) v_i + T_{i−1} v_{i+1} = 3 (T_i s_{i−1} + T_{i−1} s_i),
+/// divided by T_{i−1} + T_i and solved from the front (Thomas): v_i = offset_i − share_i v_{i+1}.
+std::vector<double> solved(const std::vector<double>& slopes, std::span<const double> durations,
+                           EndCondition first, EndCondition last) {
+  const size_t end = slopes.size();
+  std::vector<double> velocities(end + 1, 0.0), share(end + 1, 0.0);
+  velocities[0] = first.value;
+  share[0] = first.share;
+  for (size_t i = 1; i < end; ++i) {
+    const double weight = durations[i - 1] / (durations[i - 1] + durations[i]);
+    const double right = 3.0 * ((1.0 - weight) * slopes[i - 1] + weight * slopes[i]);
+    const double pivot = 2.0 - (1.0 - weight) * share[i - 1];
+    share[i] = weight / pivot;
+    velocities[i] = (right - (1.0 - weight) * velocities[i - 1]) / pivot;
+  }
+  velocities[end] =
+      (last.value - last.share * velocities[end - 1]) / (1.0 - last.share * share[end - 1]);
+  for (size_t i = end; i-- > 0;) velocities[i] -= share[i] * velocities[i + 1];
+  return velocities;
+}
+
 }  // namespace
 
 AxisLaw via_cubics(std::span<const double> points, std::span<const double> durations,
@@ -64,21 +91,34 @@ std::vector<double> spline_velocities(std::span<const double> points,
   require_path(points, durations);
   require_finite(first, "first");
   require_finite(last, "last");
+  return solved(slopes_of(points, durations), durations, {0.0, first}, {0.0, last});
+}
+
+std::vector<double> natural_spline_velocities(std::span<const double> points,
+                                              std::span<const double> durations) {
+  require_path(points, durations);
   const std::vector<double> slopes = slopes_of(points, durations);
-  // Equal q̈ on both sides of point i, times T_{i−1} T_i / 2:
-  //   T_i v_{i−1} + 2 (T_{i−1} + T_i) v_i + T_{i−1} v_{i+1} = 3 (T_i s_{i−1} + T_{i−1} s_i),
-  // solved from the front (Thomas): v_i = offset_i − share_i v_{i+1}.
-  std::vector<double> velocities(points.size(), last);
-  std::vector<double> share(points.size(), 0.0);
-  velocities[0] = first;
-  for (size_t i = 1; i < slopes.size(); ++i) {
-    const double before = durations[i - 1], after = durations[i];
-    const double right = 3.0 * (after * slopes[i - 1] + before * slopes[i]);
-    const double pivot = 2.0 * (before + after) - after * share[i - 1];
-    share[i] = before / pivot;
-    velocities[i] = (right - after * velocities[i - 1]) / pivot;
-  }
-  for (size_t i = slopes.size() - 1; i >= 1; --i) velocities[i] -= share[i] * velocities[i + 1];
+  // No q̈ at the end of a segment: its velocity and half the one across make 3/2 of its slope.
+  return solved(slopes, durations, {0.5, 1.5 * slopes.front()}, {0.5, 1.5 * slopes.back()});
+}
+
+std::vector<double> periodic_spline_velocities(std::span<const double> points,
+                                               std::span<const double> durations) {
+  require_path(points, durations);
+  const std::vector<double> slopes = slopes_of(points, durations);
+  // The splines with the velocity x at both ends are at_rest + x · unit; x closes the gap in q̈.
+  const std::vector<double> none(slopes.size(), 0.0);
+  const std::vector<double> at_rest = solved(slopes, durations, {0.0, 0.0}, {0.0, 0.0});
+  const std::vector<double> unit = solved(none, durations, {0.0, 1.0}, {0.0, 1.0});
+  const size_t last = slopes.size();
+  const double share = durations.front() / (durations.front() + durations.back());
+  const auto gap = [&](const std::vector<double>& v, double first_slope, double last_slope) {
+    return share * (2.0 * v[last] + v[last - 1] - 3.0 * last_slope) +
+           (1.0 - share) * (2.0 * v[0] + v[1] - 3.0 * first_slope);
+  };
+  const double x = -gap(at_rest, slopes.front(), slopes.back()) / gap(unit, 0.0, 0.0);
+  std::vector<double> velocities;
+  for (size_t i = 0; i <= last; ++i) velocities.push_back(at_rest[i] + x * unit[i]);
   return velocities;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 #include <random>
+#include <span>
 #include <string>
 
 #include "profile/golden.hpp"
@@ -35,6 +36,12 @@ void expect_sound(const BlendedLines& lines, const std::vector<double>& points) 
               1e-10 * lines.law.end());
   expect_continuous(lines.law, 1, 1e-9);
   for (const double t : lines.linear_time) EXPECT_GE(t, 0.0);
+}
+
+/// Lines at given speeds: durations first, then the law.
+BlendedLines at_speed(std::span<const double> points, std::span<const double> speeds,
+                      std::span<const double> accelerations) {
+  return blended_lines(points, durations_at_speed(points, speeds, accelerations), accelerations);
 }
 
 TEST(BlendedLines, GoldenTextbookSection2) {
@@ -119,15 +126,14 @@ TEST(BlendedLines, NamesTheLeastAccelerationThatWorks) {
 TEST(BlendedLines, RunsItsLinesAtTheGivenSpeeds) {
   const std::vector<double> points{10.0, 35.0, 25.0, 10.0};
   const std::array speeds{20.0, 10.0, 5.0};
-  const BlendedLines lines = blended_lines_at_speed(points, speeds, std::array{50.0});
+  const BlendedLines lines = at_speed(points, speeds, std::array{50.0});
   EXPECT_NEAR(lines.linear_velocity[0], 20.0, 1e-12);
   EXPECT_NEAR(lines.linear_velocity[1], -10.0, 1e-12);
   EXPECT_NEAR(lines.linear_velocity[2], -5.0, 1e-12);
   EXPECT_NEAR(lines.durations[1], 1.0, 1e-12);
   EXPECT_NEAR(lines.durations[0], 25.0 / 20.0 + 0.5 * 20.0 / 50.0, 1e-12);
   expect_sound(lines, points);
-  const BlendedLines pair =
-      blended_lines_at_speed(std::array{0.0, 2.0}, std::array{1.0}, std::array{1.0});
+  const BlendedLines pair = at_speed(std::array{0.0, 2.0}, std::array{1.0}, std::array{1.0});
   EXPECT_NEAR(pair.durations[0], 3.0, 1e-12);
   EXPECT_NEAR(pair.linear_velocity[0], 1.0, 1e-12);
 }
@@ -137,13 +143,13 @@ TEST(BlendedLines, NamesTheLargestSpeedItsEndsReach) {
   const std::array two{0.0, 2.0};
   const std::array one{1.0};
   try {
-    static_cast<void>(blended_lines_at_speed(two, std::array{1.5}, one));
+    static_cast<void>(at_speed(two, std::array{1.5}, one));
     FAIL() << "accepted";
   } catch (const MotionError& error) {
     EXPECT_NEAR(error.problem().limit.value(), std::sqrt(2.0), 1e-14);
     EXPECT_NE(std::string(error.what()).find("1.414214"), std::string::npos) << error.what();
   }
-  const BlendedLines lines = blended_lines_at_speed(two, std::array{1.41}, one);
+  const BlendedLines lines = at_speed(two, std::array{1.41}, one);
   EXPECT_NEAR(lines.linear_velocity[0], 1.41, 1e-12);
 }
 
@@ -155,9 +161,8 @@ TEST(BlendedLines, RefusesWhatDoesNotFit) {
   EXPECT_THROW(static_cast<void>(blended_lines(two, one, std::array{1.0, 1.0, 1.0})), MotionError);
   EXPECT_THROW(static_cast<void>(blended_lines(two, one, std::array{-5.0})), MotionError);
   EXPECT_THROW(static_cast<void>(blended_lines(two, std::array{0.0}, one)), MotionError);
-  EXPECT_THROW(static_cast<void>(blended_lines_at_speed(std::array{1.0, 1.0}, one, one)),
-               MotionError);
-  EXPECT_THROW(static_cast<void>(blended_lines_at_speed(two, std::array{100.0}, one)), MotionError);
+  EXPECT_THROW(static_cast<void>(at_speed(std::array{1.0, 1.0}, one, one)), MotionError);
+  EXPECT_THROW(static_cast<void>(at_speed(two, std::array{100.0}, one)), MotionError);
 }
 
 TEST(ParabolicBlend, FollowsItsFormInTheBlend) {

@@ -119,5 +119,30 @@ TEST(BangBang, HoldsItsAccelerationBothWays) {
   EXPECT_THROW(static_cast<void>(bang_bang(1.0, 1.0, 1.0)), MotionError);
 }
 
+TEST(QuickestTrapezoid, IsAtALimitAllTheTime) {
+  for (int seed = 0; seed < 5000; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937_64 random(static_cast<std::uint64_t>(seed));
+    std::uniform_real_distribution<double> any(-3.0, 3.0), decades(-3.0, 3.0);
+    const double q0 = any(random), q1 = any(random);
+    const double v = std::pow(10.0, decades(random)), a = std::pow(10.0, decades(random));
+    const Trapezoid move = quickest_trapezoid(q0, q1, v, a);
+    EXPECT_NEAR(move.law.at(move.law.end()).q, q1, 1e-12 * (std::abs(q0) + std::abs(q1)));
+    expect_continuous(move.law, 1);
+    EXPECT_NEAR(std::abs(move.acceleration), a, 1e-12 * a);
+    EXPECT_LE(std::abs(move.velocity), v * (1.0 + 1e-15));
+    const bool cruises = move.law.parts().size() == 3;
+    EXPECT_EQ(std::abs(move.velocity) == v, cruises);
+    EXPECT_EQ(cruises, v * v / a < std::abs(q1 - q0));
+    if (testing::Test::HasFailure()) return;
+  }
+}
+
+TEST(QuickestTrapezoid, RefusesLimitsThatAreNotPositive) {
+  EXPECT_THROW(static_cast<void>(quickest_trapezoid(0, 1, 0, 1)), MotionError);
+  EXPECT_THROW(static_cast<void>(quickest_trapezoid(0, 1, 1, -1)), MotionError);
+  EXPECT_THROW(static_cast<void>(quickest_trapezoid(1, 1, 1, 1)), MotionError);
+}
+
 }  // namespace
 }  // namespace viapoint

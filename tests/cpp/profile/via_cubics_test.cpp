@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <string>
@@ -73,6 +74,52 @@ TEST(ViaCubics, SplineKeepsAccelerationContinuousOverManyPoints) {
       EXPECT_NEAR(law.at(t).q, points[i], 1e-11);
       if (i < durations.size()) t += durations[i];
     }
+    if (testing::Test::HasFailure()) return;
+  }
+}
+
+/// Random points and durations over more than a decade.
+struct Way {
+  std::vector<double> points, durations;
+
+  explicit Way(int seed) {
+    std::mt19937_64 random(static_cast<std::uint64_t>(seed));
+    std::uniform_real_distribution<double> any(-3.0, 3.0);
+    const int segments = 1 + static_cast<int>(random() % 12);
+    points.push_back(any(random));
+    for (int i = 0; i < segments; ++i) {
+      points.push_back(any(random));
+      durations.push_back(std::exp(0.5 * any(random)));
+    }
+  }
+};
+
+TEST(ViaCubics, NaturalSplineHasNoAccelerationAtItsEnds) {
+  for (int seed = 0; seed < 2000; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const Way way(seed);
+    const AxisLaw law =
+        via_cubics(way.points, way.durations, natural_spline_velocities(way.points, way.durations));
+    expect_continuous(law, 2, 1e-10);
+    const Extremes acceleration = law.extremes(2);
+    const double scale = std::max({-acceleration.low, acceleration.high, 1.0});
+    EXPECT_NEAR(law.at(0.0).qdd, 0.0, 1e-11 * scale);
+    EXPECT_NEAR(law.at(law.end()).qdd, 0.0, 1e-11 * scale);
+    if (testing::Test::HasFailure()) return;
+  }
+}
+
+TEST(ViaCubics, PeriodicSplineCanBeRepeated) {
+  for (int seed = 0; seed < 2000; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const Way way(seed);
+    const AxisLaw law = via_cubics(way.points, way.durations,
+                                   periodic_spline_velocities(way.points, way.durations));
+    expect_continuous(law, 2, 1e-10);
+    const Extremes speed = law.extremes(1), acceleration = law.extremes(2);
+    const AxisState begin = law.at(0.0), end = law.at(law.end());
+    EXPECT_NEAR(begin.qd, end.qd, 1e-11 * std::max(-speed.low, speed.high));
+    EXPECT_NEAR(begin.qdd, end.qdd, 1e-10 * std::max({-acceleration.low, acceleration.high, 1.0}));
     if (testing::Test::HasFailure()) return;
   }
 }

@@ -13,7 +13,8 @@ namespace viapoint {
 class AxisLaw {
  public:
   /// @param parts each begins where the one before ends; parts of no duration are dropped
-  /// @throws MotionError(kBadArgument) for no part at all, or parts that do not meet in time
+  /// @throws MotionError(kBadArgument) for no part at all, parts that do not meet in time, or
+  /// values that doubles do not hold
   explicit AxisLaw(std::vector<Polynomial> parts);
   /// The law of a jerk-limited move, from time 0. @throws MotionError(kBadArgument) if it has no
   /// phases
@@ -32,5 +33,17 @@ class AxisLaw {
  private:
   std::vector<Polynomial> parts_;
 };
+
+/// At rest at q from t0 to t1. @throws MotionError(kBadArgument) unless all is finite and t0 < t1
+[[nodiscard]] AxisLaw resting(double q, double t0, double t1);
+/// The same course, `seconds` later (or, below 0, earlier). @throws MotionError(kBadArgument)
+[[nodiscard]] AxisLaw delayed(const AxisLaw& law, double seconds);
+/// The same way in `factor` times the time, from the same start: velocities fall by 1/factor,
+/// accelerations by its square, jerks by its cube. @throws MotionError(kBadArgument) unless
+/// factor > 0 and finite
+[[nodiscard]] AxisLaw stretched(const AxisLaw& law, double factor);
+/// The law with rest before and after it, so that it covers [t0, t1].
+/// @throws MotionError(kBadArgument) where it would have to rest but its velocity there is not 0
+[[nodiscard]] AxisLaw held(const AxisLaw& law, double t0, double t1);
 
 }  // namespace viapoint

@@ -24,12 +24,15 @@ struct BlendedLines {
 /// point's time; the first and the last lie wholly inside their segments.
 /// @param points (k,), k >= 2; @param durations (k − 1,) [s]
 /// @param accelerations magnitude in each blend, (k,), or (1,) for all [1/s²]
+/// @param straight_at_middle segments whose blends must both be over at half time, see
+/// pseudo_via_points()
 /// @throws MotionError(kBadArgument) for sizes that do not fit and values that are not positive;
 /// where an acceleration is too small to leave a linear part, `limit` is the least common
 /// acceleration that works, and the message names it
 [[nodiscard]] BlendedLines blended_lines(std::span<const double> points,
                                          std::span<const double> durations,
-                                         std::span<const double> accelerations);
+                                         std::span<const double> accelerations,
+                                         std::span<const size_t> straight_at_middle = {});
 
 /// Durations with which every linear part runs at its given speed: |Δq|/v, and half a blend v/(2a)
 /// more for each end of the motion in the segment; 0 between equal points. For several axes take
@@ -40,12 +43,6 @@ struct BlendedLines {
 [[nodiscard]] std::vector<double> durations_at_speed(std::span<const double> points,
                                                      std::span<const double> speeds,
                                                      std::span<const double> accelerations);
-
-/// blended_lines() with durations_at_speed(). @throws MotionError(kBadArgument) as both, and for
-/// two equal points in a row (no speed gives them a duration)
-[[nodiscard]] BlendedLines blended_lines_at_speed(std::span<const double> points,
-                                                  std::span<const double> speeds,
-                                                  std::span<const double> accelerations);
 
 /// Three points and one blend of given half width, lines at full speed before and after:
 /// w(t) = a τ²/2 + b τ + c with τ = t − T1 + ΔT on [T1 − ΔT, T1 + ΔT] (Taylor 1979).

@@ -18,8 +18,11 @@ struct Extremes {
 
 /// q(t) = Σ c[k] (t − t0)^k, meant for t in [t0, t1].
 struct Polynomial {
+  static constexpr int kMaxDegree = 11;
+  using Coefficients = std::array<double, kMaxDegree + 1>;
+
   double t0 = 0.0, t1 = 0.0;  ///< [s], t0 < t1
-  std::array<double, 6> c{};
+  Coefficients c{};
 
   /// State at t; beyond [t0, t1] the same polynomial goes on. Real-time: safe.
   [[nodiscard]] AxisState at(double t) const;

@@ -4,7 +4,6 @@
 /// inside; the motion starts and ends at speed.
 #pragma once
 
-#include <array>
 #include <span>
 
 #include "viapoint/profile/axis_law.hpp"
@@ -16,8 +15,8 @@ namespace viapoint {
 /// @param from where the transition starts, seen from the point
 /// @param to the next point, seen from this one, reached after `duration` [s]
 /// Real-time: safe.
-[[nodiscard]] std::array<double, 6> quartic_transition(double from, double to, double duration,
-                                                       double t_acc);
+[[nodiscard]] Polynomial::Coefficients quartic_transition(double from, double to, double duration,
+                                                          double t_acc);
 
 /// Refuses what cannot be laid out: fewer than two points, durations that are not positive and
 /// finite, a t_acc that does not fit (a segment with a transition at both ends must last 2 t_acc,

@@ -27,6 +27,12 @@ struct Trapezoid {
 /// unless |q1 − q0|/duration < |velocity| <= 2 |q1 − q0|/duration; the message names that range
 [[nodiscard]] Trapezoid lspb_with_velocity(double q0, double q1, double duration, double velocity);
 
+/// The quickest move from rest to rest under limits on velocity and acceleration: a trapezoid, or
+/// bang-bang where the velocity is not reached (Biagiotti & Melchiorri 2008, §3.2.3).
+/// @throws MotionError(kBadArgument) unless limits > 0, all is finite and q0 != q1
+[[nodiscard]] Trapezoid quickest_trapezoid(double q0, double q1, double velocity,
+                                           double acceleration);
+
 /// The quickest move from rest to rest under an acceleration limit: half the time each way,
 /// t_s = √(|q1 − q0|/a) to the switch.
 /// @throws MotionError(kBadArgument) unless acceleration > 0, all is finite and q0 != q1

@@ -23,10 +23,19 @@ namespace viapoint {
                                                    double first = 0.0, double last = 0.0);
 
 /// Via velocities that make acceleration continuous: the cubic spline with given end velocities
-/// (de Boor 1978, ch. IV; tridiagonal, diagonally dominant). Returns (k,). For three points these
-/// are the two cubics of the textbooks.
+/// (clamped; de Boor 1978, ch. IV; tridiagonal, diagonally dominant). Returns (k,). For three
+/// points these are the two cubics of the textbooks.
 [[nodiscard]] std::vector<double> spline_velocities(std::span<const double> points,
                                                     std::span<const double> durations,
                                                     double first = 0.0, double last = 0.0);
+
+/// The same with no acceleration at both ends, whatever velocities that takes (natural).
+[[nodiscard]] std::vector<double> natural_spline_velocities(std::span<const double> points,
+                                                            std::span<const double> durations);
+
+/// The same with the velocity and the acceleration of the start at the end (periodic), so that the
+/// motion can be repeated; the points need not close.
+[[nodiscard]] std::vector<double> periodic_spline_velocities(std::span<const double> points,
+                                                             std::span<const double> durations);
 
 }  // namespace viapoint

@@ -1,0 +1,74 @@
+#include <cmath>
+#include <utility>
+
+#include "profile/argument_check.hpp"
+#include "viapoint/profile/axis_law.hpp"
+
+namespace viapoint {
+namespace {
+
+/// Velocities up to this share of the law's largest are rounding of rest.
+constexpr double kRestRounding = 1e-9;
+
+void require_rest(const AxisLaw& law, double t, const char* where) {
+  const Extremes speed = law.extremes(1);
+  const double largest = std::max(std::abs(speed.low), std::abs(speed.high));
+  const double here = law.at(t).qd;
+  if (std::abs(here) <= kRestRounding * largest) return;
+  refuse(std::string("the axis would have to rest ") + where +
+             " its law, but the law has a "
+             "velocity of " +
+             written(here) + " there; it must be 0",
+         here, 0.0, {"give a law that starts and ends at rest", "synchronise the axes"});
+}
+
+}  // namespace
+
+AxisLaw resting(double q, double t0, double t1) {
+  require_finite(q, "q");
+  require_finite(t0, "t0");
+  require_finite(t1, "t1");
+  return AxisLaw({Polynomial{t0, t1, {q}}});
+}
+
+AxisLaw delayed(const AxisLaw& law, double seconds) {
+  require_finite(seconds, "seconds");
+  std::vector<Polynomial> parts = law.parts();
+  for (Polynomial& part : parts) {
+    part.t0 += seconds;
+    part.t1 += seconds;
+  }
+  return AxisLaw(std::move(parts));
+}
+
+AxisLaw stretched(const AxisLaw& law, double factor) {
+  require_positive(factor, "factor");
+  std::vector<Polynomial> parts = law.parts();
+  for (Polynomial& part : parts) {
+    part.t0 = law.start() + factor * (part.t0 - law.start());
+    part.t1 = law.start() + factor * (part.t1 - law.start());
+    double power = 1.0;
+    for (double& c : part.c) {
+      if (c != 0.0) c *= power;
+      power /= factor;
+    }
+  }
+  return AxisLaw(std::move(parts));
+}
+
+AxisLaw held(const AxisLaw& law, double t0, double t1) {
+  require_finite(t0, "t0");
+  require_finite(t1, "t1");
+  std::vector<Polynomial> parts = law.parts();
+  if (t0 < law.start()) {
+    require_rest(law, law.start(), "before");
+    parts.insert(parts.begin(), Polynomial{t0, law.start(), {law.at(law.start()).q}});
+  }
+  if (t1 > law.end()) {
+    require_rest(law, law.end(), "after");
+    parts.push_back(Polynomial{law.end(), t1, {law.at(law.end()).q}});
+  }
+  return AxisLaw(std::move(parts));
+}
+
+}  // namespace viapoint
