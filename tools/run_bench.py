@@ -62,6 +62,18 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     return options
 
 
+def record(about: dict[str, str], figures: list[Row], differences: list[Row]) -> str:
+    """Write everything as JSON, a row a line."""
+
+    def rows(values: list[Row]) -> str:
+        return "[\n" + ",\n".join(f"  {json.dumps(row)}" for row in values) + "\n ]"
+
+    parts = [f' "machine": {json.dumps(about)}', f' "figures": {rows(figures)}']
+    if differences:
+        parts.append(f' "differences": {rows(differences)}')
+    return "{\n" + ",\n".join(parts) + "\n}\n"
+
+
 def main(arguments: list[str]) -> int:
     """Measure what was asked for and print it."""
     options = parse(arguments)
@@ -84,10 +96,7 @@ def main(arguments: list[str]) -> int:
         differences += others
     if options.json:
         about["date"] = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
-        record = {"machine": about, "figures": figures}
-        if differences:
-            record["differences"] = differences
-        options.json.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
+        options.json.write_text(record(about, figures, differences), encoding="utf-8")
     return 0
 
 

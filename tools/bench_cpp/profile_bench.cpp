@@ -91,7 +91,10 @@ void worst_case(std::uint64_t count) {
   StateToState motion;
   double worst = 0.0, worst_twice = 0.0;
   std::uint64_t worst_seed = 0;
-  for (int i = 0; i < 100'000; ++i) empty.add(-processor_time() + processor_time());
+  for (int i = 0; i < 100'000; ++i) {
+    const double begin = processor_time();
+    empty.add(processor_time() - begin);
+  }
   for (std::uint64_t seed = 0; seed < count; ++seed) {
     const StateProblem problem = testing::state_problem(seed, kJoints, kDecades);
     const auto timed = [&] {

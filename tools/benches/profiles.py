@@ -187,8 +187,8 @@ def compare(library: Path, kind: str, joints: int, count: int) -> tuple[Row, Row
             "ours_longer": int(longer.sum()),
         }
         differences = [
-            {"kind": kind, "joints": joints, "index": int(i), "ours": mine[i, 0],
-             "ruckig": other[i, 0]}
+            {"kind": kind, "joints": joints, "index": int(i), "ours": float(mine[i, 0]),
+             "ruckig": float(other[i, 0])}
             for i in np.flatnonzero(shorter | longer)[:LISTED]
         ]  # fmt: skip
         other_mean = 1e6 * float(np.nanmean(other[:, 1]))
