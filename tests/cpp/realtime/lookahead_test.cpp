@@ -45,17 +45,7 @@ Motion composed_motion(std::mt19937& random) {
     for (std::size_t k = 1; k < 6; ++k) sum += piece.timing[k] = uniform(random, -0.1, 1.0);
     for (double& c : piece.timing) c /= std::max(sum, 0.5);
   }
-  Motion motion;
-  motion.limits = even_limits(joints, 1e12, 1e12, 1e12);
-  const Certificate reached = certify(pieces, motion.limits);
-  for (int i = 0; i < joints; ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    motion.limits.velocity[i] = reached.velocity[at].value;
-    motion.limits.acceleration[i] = reached.acceleration[at].value;
-    motion.limits.jerk[i] = reached.jerk[at].value;
-  }
-  motion.trajectory = Trajectory(std::move(pieces), motion.limits);
-  return motion;
+  return motion_at_its_limits(std::move(pieces));
 }
 
 /// Spreads the samples: the fractional parts of multiples of the golden ratio.

@@ -52,7 +52,7 @@ JointLimits even_limits(int joints, double velocity, double acceleration, double
 
 void append_straight(std::vector<TrajectoryPiece>& pieces, const JointVector& start,
                      const JointVector& step, const JointLimits& limits, int move) {
-  double v = 1e9, a = 1e9, j = 1e9;
+  double v = 1e300, a = 1e300, j = 1e300;
   for (int i = 0; i < step.size(); ++i) {
     const double size = std::max(std::abs(step[i]), 1e-12);
     v = std::min(v, limits.velocity[i] / size);
@@ -92,6 +92,21 @@ void append_wait(std::vector<TrajectoryPiece>& pieces, const JointVector& positi
   }
   piece.timing[1] = 1.0;
   pieces.push_back(piece);
+}
+
+Motion motion_at_its_limits(std::vector<TrajectoryPiece> pieces) {
+  const int joints = pieces.front().joints;
+  Motion motion;
+  motion.limits = even_limits(joints, 1e12, 1e12, 1e12);
+  const Certificate reached = certify(pieces, motion.limits);
+  for (int i = 0; i < joints; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    motion.limits.velocity[i] = reached.velocity[at].value;
+    motion.limits.acceleration[i] = reached.acceleration[at].value;
+    motion.limits.jerk[i] = reached.jerk[at].value;
+  }
+  motion.trajectory = Trajectory(std::move(pieces), motion.limits);
+  return motion;
 }
 
 Motion straight_motion(std::mt19937& random) {
@@ -144,45 +159,20 @@ Motion curved_motion(std::mt19937& random) {
       state = next;
     }
   }
-  Motion motion;
-  motion.limits = even_limits(joints, 1e6, 1e9, 1e12);
-  const Certificate reached = certify(pieces, motion.limits);
-  for (int i = 0; i < joints; ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    motion.limits.velocity[i] = reached.velocity[at].value;
-    motion.limits.acceleration[i] = reached.acceleration[at].value;
-    motion.limits.jerk[i] = reached.jerk[at].value;
-  }
-  motion.trajectory = Trajectory(std::move(pieces), motion.limits);
-  return motion;
+  return motion_at_its_limits(std::move(pieces));
 }
 
 Motion dense_motion(int moves) {
   Motion motion;
   motion.limits = even_limits(2, 3.0, 3000.0, 3e6);
   std::vector<TrajectoryPiece> pieces;
-  double q = 0.0;
+  JointVector q = JointVector::Zero(2);
   for (int m = 0; m < moves; ++m) {
-    const double size = 1e-8 * (1 + m % 3), direction = m % 2 == 0 ? 1.0 : -1.0;
-    const JerkProfile profile = rest_to_rest(size, 3.0, 3000.0, 3e6);
-    double t = 0.0;
-    for (int k = 0; k < profile.phases; ++k) {
-      const auto phase = static_cast<std::size_t>(k);
-      const double T = profile.duration[phase];
-      if (T <= 0.0) continue;
-      const AxisState s = profile.at(t);
-      TrajectoryPiece piece;
-      piece.duration = T;
-      piece.joints = 2;
-      piece.move = m;
-      piece.timing = {s.q, s.qd * T, 0.5 * s.qdd * T * T, profile.jerk[phase] * T * T * T / 6.0,
-                      0.0, 0.0};
-      piece.path[0] = {q, -q};
-      piece.path[1] = {direction, -direction};
-      pieces.push_back(piece);
-      t += T;
-    }
-    q += direction * size;
+    const double size = (m % 2 == 0 ? 1e-8 : -1e-8) * (1 + m % 3);
+    JointVector step(2);
+    step << size, -size;
+    append_straight(pieces, q, step, motion.limits, m);
+    q += step;
   }
   motion.trajectory = Trajectory(std::move(pieces), motion.limits);
   return motion;

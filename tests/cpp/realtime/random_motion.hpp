@@ -24,6 +24,8 @@ void append_straight(std::vector<TrajectoryPiece>& pieces, const JointVector& st
 /// A stand at `position`.
 void append_wait(std::vector<TrajectoryPiece>& pieces, const JointVector& position, double seconds,
                  int move);
+/// Under limits of velocity, acceleration and jerk that the pieces just reach.
+[[nodiscard]] Motion motion_at_its_limits(std::vector<TrajectoryPiece> pieces);
 /// A stay, moves to random points, stops between them, random limits.
 [[nodiscard]] Motion straight_motion(std::mt19937& random);
 /// A C² curve through random states without a stop; each limit is just what the curve reaches.
