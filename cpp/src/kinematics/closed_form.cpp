@@ -25,12 +25,20 @@ Elbow bend_elbow(double a, double b, double reach) {
   const double stretched = (a + b) - reach;
   const double folded = reach - std::abs(a - b);
   const double missing = std::max(-stretched, -folded);
-  if (missing > kBoundary) return {false, 0.0, missing};
+  Elbow elbow;
+  if (missing > kBoundary) {
+    elbow.out_of_reach = missing;
+    return elbow;
+  }
   // 1 − cos γ = (a + b − r)(a + b + r)/2ab and 1 + cos γ = (r − |a − b|)(r + |a − b|)/2ab: the
   // factors vanish at the boundary, so that no digits are lost there.
   const double one_minus = std::max(stretched, 0.0) * (a + b + reach);
   const double one_plus = std::max(folded, 0.0) * (reach + std::abs(a - b));
-  return {true, 2.0 * std::atan2(std::sqrt(one_minus), std::sqrt(one_plus)), 0.0};
+  elbow.solved = true;
+  elbow.cosine = (one_plus - one_minus) / (4.0 * a * b);
+  elbow.sine = std::sqrt(one_minus * one_plus) / (2.0 * a * b);
+  elbow.angle = std::atan2(elbow.sine, elbow.cosine);
+  return elbow;
 }
 
 ShoulderBranches turn_shoulder(double x, double y, double side, double held) {

@@ -108,7 +108,9 @@ inline constexpr double kOnAxis = 1e-10;
 /// The elbow of a planar arm with links a and b that spans `reach`, in [0, π]; 0 is stretched.
 struct Elbow {
   bool solved = false;
-  double angle = 0.0;         ///< [rad]
+  double angle = 0.0;   ///< [rad]
+  double cosine = 1.0;  ///< of the angle
+  double sine = 0.0;
   double out_of_reach = 0.0;  ///< [m], when not solved
 };
 [[nodiscard]] Elbow bend_elbow(double a, double b, double reach);

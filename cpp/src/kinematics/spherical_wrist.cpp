@@ -25,8 +25,8 @@ std::optional<SphericalWrist> SphericalWrist::recognise(const ForwardKinematics&
   }
 
   SphericalWrist arm;
-  arm.pose_base_s_ = shoulder_frame(zero);
-  const Pose pose_s_base = arm.pose_base_s_.inverse(Eigen::Isometry);
+  const Pose pose_s_base = shoulder_frame(zero).inverse(Eigen::Isometry);
+  arm.pose_s_base_ = pose_s_base;
   const Eigen::Vector3d shoulder = pose_s_base * origin[1];
   const Eigen::Vector3d elbow = pose_s_base * origin[2];
   const Eigen::Vector3d wrist = pose_s_base * *centre;
@@ -45,7 +45,9 @@ std::optional<SphericalWrist> SphericalWrist::recognise(const ForwardKinematics&
   wrist_frame.col(0) = wrist_frame.col(1).cross(wrist_frame.col(2));
   arm.tilt_ = std::atan2(axis[5].dot(wrist_frame.col(0)), axis[5].dot(wrist_frame.col(2)));
   arm.rotation_s_wrist_ = pose_s_base.linear() * wrist_frame;
-  arm.rotation_s_tool_ = pose_s_base.linear() * zero.pose_base_tool.linear();
+  arm.rotation_tool_wrist_ = zero.pose_base_tool.linear().transpose() *
+                             pose_s_base.linear().transpose() * arm.rotation_s_wrist_ *
+                             about_y(arm.tilt_);
   arm.wrist_in_tool_ = zero.pose_base_tool.inverse(Eigen::Isometry) * *centre;
   return arm;
 }
@@ -54,14 +56,11 @@ std::string SphericalWrist::family() const {
   return "spherical wrist: axes 4, 5, 6 meet in one point";
 }
 
-Eigen::Matrix3d SphericalWrist::arm_rotation(const Eigen::Vector3d& arm) const {
-  return about_z(arm[0]) * about_y(arm[1] + elbow_sign_ * arm[2]);
-}
-
 void SphericalWrist::solve(const InverseTask& task, const JointVector& held,
                            ClosedSolutions& solutions) const {
-  const Pose pose_s_tool = pose_base_s_.inverse(Eigen::Isometry) * task.goal;
+  const Pose pose_s_tool = pose_s_base_ * task.goal;
   const Eigen::Vector3d wrist = pose_s_tool * wrist_in_tool_;
+  const Eigen::Matrix3d turned = pose_s_tool.linear() * rotation_tool_wrist_;
 
   // Joint 1 turns the arm's plane, which passes axis 1 at the distance |side|.
   const ShoulderBranches shoulders = turn_shoulder(wrist.x(), wrist.y(), side_, held[0]);
@@ -69,41 +68,39 @@ void SphericalWrist::solve(const InverseTask& task, const JointVector& held,
   for (const ShoulderBranch& shoulder : shoulders) {
     // Joints 2 and 3 are a planar arm in (z, x): turning about y by θ multiplies z + ix by e^{iθ}.
     const double ahead = shoulder.forward - shoulder_x_;
-    const Elbow elbow = bend_elbow(upper_, fore_, std::hypot(ahead, wrist.z()));
+    const double span = std::sqrt(ahead * ahead + wrist.z() * wrist.z());
+    const Elbow elbow = bend_elbow(upper_, fore_, span);
     if (!elbow.solved) {
       missing = missing == 0.0 ? elbow.out_of_reach : std::min(missing, elbow.out_of_reach);
       continue;
     }
-    for (const double bend : {elbow.angle, -elbow.angle}) {
+    const Eigen::Matrix3d before = about_z(-shoulder.q1) * turned;
+    for (const double side : {1.0, -1.0}) {
+      const double bend = side * elbow.angle;
+      const double span_z = upper_ + fore_ * elbow.cosine;
+      const double span_x = side * fore_ * elbow.sine;
+      // The upper arm's turn carries span to (ahead, z).
+      const double turn =
+          std::atan2(ahead * span_z - wrist.z() * span_x, wrist.z() * span_z + ahead * span_x);
+      const double q2 = span < kOnAxis ? held[1] : turn - upper_angle_;
       const double q3 = elbow_sign_ * (bend - fore_angle_ + upper_angle_);
-      const double span_z = upper_ + fore_ * std::cos(bend);
-      const double span_x = fore_ * std::sin(bend);
-      const double q2 =
-          std::hypot(ahead, wrist.z()) < kOnAxis
-              ? held[1]
-              : std::atan2(ahead, wrist.z()) - upper_angle_ - std::atan2(span_x, span_z);
-      solve_wrist(pose_s_tool.linear(), Eigen::Vector3d(shoulder.q1, q2, q3), held,
-                  solutions.branches);
+      solve_wrist(before, Eigen::Vector3d(shoulder.q1, q2, q3), held, solutions.branches);
       if (elbow.angle == 0.0) break;  // stretched: both elbows are one
     }
   }
   if (solutions.branches.empty()) solutions.out_of_reach = missing;
 }
 
-void SphericalWrist::solve_wrist(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& arm,
+void SphericalWrist::solve_wrist(const Eigen::Matrix3d& before, const Eigen::Vector3d& arm,
                                  const JointVector& held, BranchList& out) const {
   // What is left for the wrist, in its own frame: N = Rz(q4) Ry(q5 + tilt) Rz(q6).
-  const Eigen::Matrix3d left =
-      arm_rotation(arm).transpose() * rotation * rotation_s_tool_.transpose();
   const Eigen::Matrix3d n =
-      rotation_s_wrist_.transpose() * left * rotation_s_wrist_ * about_y(tilt_);
+      rotation_s_wrist_.transpose() * about_y(-(arm[1] + elbow_sign_ * arm[2])) * before;
   const double sine = std::hypot(n(0, 2), n(1, 2));
 
   // With q4 known the other two follow without loss, however small the sine:
   // Rz(−q4) N = Ry(θ) Rz(q6), whose middle row is (sin q6, cos q6, 0).
-  const auto finish = [&](double q4) -> ClosedBranch& {
-    const double c = std::cos(q4);
-    const double s = std::sin(q4);
+  const auto finish = [&](double q4, double c, double s) -> ClosedBranch& {
     ClosedBranch& branch = out.add();
     branch.q.resize(6);
     branch.q << arm[0], arm[1], arm[2], q4, std::atan2(c * n(0, 2) + s * n(1, 2), n(2, 2)) - tilt_,
@@ -111,7 +108,7 @@ void SphericalWrist::solve_wrist(const Eigen::Matrix3d& rotation, const Eigen::V
     return branch;
   };
   if (sine < kWristSine) {
-    ClosedBranch& branch = finish(held[3]);
+    ClosedBranch& branch = finish(held[3], std::cos(held[3]), std::sin(held[3]));
     branch.wrist_free = true;
     branch.first = 3;
     branch.second = 5;
@@ -120,8 +117,14 @@ void SphericalWrist::solve_wrist(const Eigen::Matrix3d& rotation, const Eigen::V
     return;
   }
   const double q4 = std::atan2(n(1, 2), n(0, 2));
-  finish(q4);
-  finish(q4 > 0.0 ? q4 - kPi : q4 + kPi);
+  const ClosedBranch& bent = finish(q4, n(0, 2) / sine, n(1, 2) / sine);
+  // The other side: half a turn of joints 4 and 6, and the bend the other way.
+  const auto half_turn = [](double angle) { return angle > 0.0 ? angle - kPi : angle + kPi; };
+  ClosedBranch& flipped = out.add();
+  flipped.q = bent.q;
+  flipped.q[3] = half_turn(q4);
+  flipped.q[4] = -(bent.q[4] + tilt_) - tilt_;
+  flipped.q[5] = half_turn(bent.q[5]);
 }
 
 ArmSides SphericalWrist::sides(const JointVector& q) const {

@@ -26,15 +26,15 @@ class SphericalWrist final : public ClosedForm {
 
  private:
   SphericalWrist() = default;
-  void solve_wrist(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& arm,
+  /// @param before the wrist's orientation when joint 1 is taken away
+  void solve_wrist(const Eigen::Matrix3d& before, const Eigen::Vector3d& arm,
                    const JointVector& held, BranchList& out) const;
-  [[nodiscard]] Eigen::Matrix3d arm_rotation(const Eigen::Vector3d& arm) const;
 
   // Frame S: origin on axis 1 at the height of axis 2, z along axis 1, y along axis 2.
-  Pose pose_base_s_ = Pose::Identity();
+  Pose pose_s_base_ = Pose::Identity();
   Eigen::Vector3d wrist_in_tool_ = Eigen::Vector3d::Zero();  ///< wrist centre in the tool frame
-  Eigen::Matrix3d rotation_s_tool_ = Eigen::Matrix3d::Identity();   ///< at q = 0
-  Eigen::Matrix3d rotation_s_wrist_ = Eigen::Matrix3d::Identity();  ///< y: axis 5, z: axis 4
+  Eigen::Matrix3d rotation_tool_wrist_ = Eigen::Matrix3d::Identity();  ///< with the wrist straight
+  Eigen::Matrix3d rotation_s_wrist_ = Eigen::Matrix3d::Identity();     ///< y: axis 5, z: axis 4
   double shoulder_x_ = 0.0;   ///< axis 2 in front of axis 1 [m]
   double side_ = 0.0;         ///< wrist centre along axis 2 [m]
   double upper_ = 0.0;        ///< axis 2 to axis 3 [m]
