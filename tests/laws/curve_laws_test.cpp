@@ -20,6 +20,8 @@ TEST_P(CurveLaws, DerivativesAreThoseOfTheValue) {
   std::uniform_real_distribution<double> along(step, curve->length() - step);
   for (int i = 0; i < 500; ++i) {
     const double s = along(random);
+    // Across a jump of the third derivative a difference is none of either side.
+    if (curve->last_break(s - step, s + step) < s + step) continue;
     const CurvePoint here = curve->at(s);
     const CurvePoint before = curve->at(s - step);
     const CurvePoint after = curve->at(s + step);

@@ -3,7 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
+#include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "planning/leg_builder.hpp"
 #include "planning/ways_out.hpp"
@@ -47,7 +51,29 @@ class Walk {
 
   void operator()(const LinMove& move) {
     warn_of_correction(move.target);
-    build(move.target, [&] { return builder_.lin(move, at_); }, &move);
+    build_curve(move, move.target, [this](const LinMove& m) { return builder_.lin(m, at_); });
+  }
+
+  void operator()(const CircMove& move) {
+    warn_of_correction(move.via);
+    warn_of_correction(move.target);
+    build_curve(move, move.target, [this](const CircMove& m) { return builder_.circ(m, at_); });
+  }
+
+  void operator()(const TurnMove& move) {
+    build_curve(move, goal_of(move), [this](const TurnMove& m) { return builder_.turn(m, at_); });
+  }
+
+  void operator()(const SplineMove& move) {
+    for (const Target& point : move.points) warn_of_correction(point);
+    std::optional<Target> goal;
+    if (!move.points.empty()) goal = move.points.back();
+    const auto leg = [this](const SplineMove& m) { return builder_.spline(m, at_); };
+    if (move.space == SplineSpace::kJoint) {
+      build(goal, [&] { return leg(move); }, nullptr);
+    } else {
+      build_curve(move, goal, leg);
+    }
   }
 
   void operator()(const Wait& wait) {
@@ -104,7 +130,7 @@ class Walk {
       return false;
     }
     try {
-      builder_.require_within_limits(program_.start, "the start");
+      require_within_limits(robot_, program_.start, "the start");
     } catch (const MotionError& error) {
       itinerary_.report.problems.push_back(error.problem());
       return false;
@@ -113,14 +139,40 @@ class Walk {
     return true;
   }
 
-  /// Builds one leg; where that fails says why, and goes on from the target.
+  /// The end of a turn hangs on its start: nothing where that is not known.
+  std::optional<Target> goal_of(const TurnMove& move) const {
+    if (lost_) return std::nullopt;
+    try {
+      return builder_.goal_of(move, at_);
+    } catch (const MotionError&) {
+      return std::nullopt;  // building the leg says why
+    }
+  }
+
+  template <typename Move, typename Build>
+  void build_curve(const Move& move, const std::optional<Target>& goal, const Build& leg_of) {
+    Move by_wrist = move;
+    by_wrist.orientation = Orientation::kWrist;
+    std::function<Leg()> another;
+    if (move.orientation != Orientation::kWrist) another = [&] { return leg_of(by_wrist); };
+    const std::function<std::vector<std::string>()> ways = [&]() -> std::vector<std::string> {
+      if (!goal) return {};
+      return ways_out_of(*goal, at_, builder_, another);
+    };
+    build(goal, [&] { return leg_of(move); }, ways);
+  }
+
+  /// Builds one leg; where that fails says why, and goes on from the goal.
+  /// @param ways finds what would work instead; null where nothing is tried
   template <typename Build>
-  void build(const Target& target, const Build& build_leg, const LinMove* lin) {
+  void build(const std::optional<Target>& goal, const Build& build_leg,
+             const std::function<std::vector<std::string>()>& ways) {
     const MoveOptions& options = program_.steps[static_cast<size_t>(step_)].options;
     if (!options_are_sound(options)) return;
     try {
       if (lost_) {  // where this leg begins is not known: only its end can be looked at
-        at_ = builder_.resolve(target, at_);
+        if (!goal) return;
+        at_ = builder_.resolve(*goal, at_);
         lost_ = false;
         return;
       }
@@ -136,23 +188,29 @@ class Walk {
         add(std::move(problem));
         return;
       }
-      if (lin != nullptr && !lost_) {
+      if (ways && !lost_) {
         // Only what was tried and works is offered; the follower's general hints stand where
-        // nothing does.
-        std::vector<std::string> ways = ways_out_of(*lin, at_, builder_);
-        if (!ways.empty()) problem.ways_out = std::move(ways);
+        // nothing does, and what is wrong with the curve itself is mended otherwise.
+        std::vector<std::string> found;
+        if (problem.code != ErrorCode::kDegenerateCurve &&
+            problem.code != ErrorCode::kDiscontinuous && problem.code != ErrorCode::kBadArgument) {
+          found = ways();
+        }
+        if (!found.empty()) problem.ways_out = std::move(found);
       }
       add(std::move(problem));
-      go_on_from(target);
+      go_on_from(goal);
     }
   }
 
-  void go_on_from(const Target& target) {
+  void go_on_from(const std::optional<Target>& goal) {
     try {
-      at_ = builder_.resolve(target, at_);
+      lost_ = true;
+      if (!goal) return;
+      at_ = builder_.resolve(*goal, at_);
       lost_ = false;
     } catch (const MotionError&) {
-      lost_ = true;  // the target's own problem is in the report already
+      // The target's own problem is in the report already.
     }
   }
 

@@ -16,17 +16,17 @@ bool works(const Build& build) {
 
 }  // namespace
 
-std::vector<std::string> ways_out_of(const LinMove& failed, const JointVector& start,
-                                     const LegBuilder& builder) {
+std::vector<std::string> ways_out_of(const Target& goal, const JointVector& start,
+                                     const LegBuilder& builder,
+                                     const std::function<Leg()>& by_wrist) {
   std::vector<std::string> ways;
-  if (works([&] { return builder.ptp(PtpMove{failed.target}, start); })) {
+  if (works([&] { return builder.ptp(PtpMove{goal}, start); })) {
     ways.emplace_back("a joint move to the same target: movej(...)");
   }
-  if (failed.orientation != Orientation::kWrist &&
-      works([&] { return builder.lin({failed.target, Orientation::kWrist}, start); })) {
+  if (by_wrist && works(by_wrist)) {
     ways.emplace_back(
-        "a straight line of the tool position with the wrist joints interpolated: "
-        "movel(..., orientation=\"wrist\")");
+        "the same curve of the tool position with the wrist joints interpolated: "
+        "orientation=\"wrist\"");
   }
   return ways;
 }

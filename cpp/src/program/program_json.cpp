@@ -2,72 +2,35 @@
 #include <string>
 #include <utility>
 
+#include "program/curve_json.hpp"
 #include "program/json_reader.hpp"
+#include "program/target_json.hpp"
 #include "viapoint/core/atomic_file.hpp"
 #include "viapoint/program/motion_program.hpp"
 
 namespace viapoint {
 namespace {
 
+using program_json::circ_of;
 using program_json::Json;
+using program_json::json_of;
 using program_json::Node;
+using program_json::orientation_of;
+using program_json::spline_of;
+using program_json::target_of;
+using program_json::turn_of;
+using program_json::value_of;
+using program_json::Word;
+using program_json::word_of;
+using program_json::write;
 
 constexpr int kFormat = 1;
 
-template <typename Enum>
-struct Word {
-  Enum value;
-  const char* text;
-};
-constexpr Word<Orientation> kOrientations[] = {
-    {Orientation::kLeast, "least"}, {Orientation::kWrist, "wrist"}, {Orientation::kFixed, "fixed"}};
 constexpr Word<ZoneKind> kZones[] = {{ZoneKind::kRadius, "radius"},
                                      {ZoneKind::kDeviation, "deviation"},
                                      {ZoneKind::kJointDeviation, "joint_deviation"}};
 constexpr Word<TimedSpace> kSpaces[] = {{TimedSpace::kJoint, "joint"},
                                         {TimedSpace::kCartesian, "cartesian"}};
-
-template <typename Enum, size_t N>
-const char* word_of(Enum value, const Word<Enum> (&words)[N]) {
-  for (const auto& word : words) {
-    if (word.value == value) return word.text;
-  }
-  return words[0].text;
-}
-
-template <typename Enum, size_t N>
-Enum value_of(const Node& node, const Word<Enum> (&words)[N]) {
-  const std::string text = node.text();
-  std::string known;
-  for (const auto& word : words) {
-    if (text == word.text) return word.value;
-    known += (known.empty() ? "" : ", ") + std::string(word.text);
-  }
-  node.refuse("one of " + known);
-}
-
-// ---- writing
-
-Json json_of(const JointVector& q) { return std::vector<double>(q.begin(), q.end()); }
-
-Json json_of(const Target& target) {
-  Json json = Json::object();
-  if (const auto* joints = std::get_if<JointTarget>(&target)) {
-    json["joints"] = json_of(joints->q);
-  } else if (const auto* pose = std::get_if<PoseTarget>(&target)) {
-    Json rows = Json::array();
-    for (int row = 0; row < 4; ++row) {
-      const Eigen::RowVector4d values = pose->pose_base_tool.matrix().row(row);
-      rows.push_back(std::vector<double>(values.begin(), values.end()));
-    }
-    json["pose"] = rows;
-    if (pose->correction != 0.0) json["correction"] = pose->correction;
-  } else {
-    const Eigen::Vector3d& p = std::get<PositionTarget>(target).position;
-    json["position"] = std::vector<double>(p.begin(), p.end());
-  }
-  return json;
-}
 
 struct StepWriter {
   Json& json;
@@ -75,8 +38,11 @@ struct StepWriter {
   void operator()(const PtpMove& move) const { json["ptp"] = json_of(move.target); }
   void operator()(const LinMove& move) const {
     json["lin"] = json_of(move.target);
-    json["orientation"] = word_of(move.orientation, kOrientations);
+    json["orientation"] = word_of(move.orientation);
   }
+  void operator()(const CircMove& move) const { write(json, move); }
+  void operator()(const TurnMove& move) const { write(json, move); }
+  void operator()(const SplineMove& move) const { write(json, move); }
   void operator()(const Wait& wait) const { json["wait"] = wait.seconds; }
   void operator()(const SetOutput& output) const {
     json["set_do"] = {{"index", output.index}, {"value", output.value}};
@@ -110,44 +76,6 @@ Json json_of(const Step& step) {
 }
 
 // ---- reading
-
-Pose pose_of(const Node& node) {
-  if (node.array_size() != 4) node.refuse("four rows of four numbers");
-  Eigen::Matrix4d matrix;
-  for (size_t row = 0; row < 4; ++row) {
-    const Node json_row = node.item(row);
-    if (json_row.array_size() != 4) json_row.refuse("four numbers");
-    for (size_t column = 0; column < 4; ++column) {
-      matrix(static_cast<int>(row), static_cast<int>(column)) = json_row.item(column).number();
-    }
-  }
-  try {
-    return checked_pose(matrix).pose;
-  } catch (const MotionError& error) {
-    node.refuse("a pose; " + error.problem().message);
-  }
-}
-
-Target target_of(const Node& node, bool timed = false) {
-  if (timed) {
-    node.only({"joints", "pose", "position", "correction", "seconds"});
-  } else {
-    node.only({"joints", "pose", "position", "correction"});
-  }
-  if (node.has("joints")) return JointTarget{node.at("joints").joint_vector()};
-  if (node.has("pose")) {
-    PoseTarget target{pose_of(node.at("pose"))};
-    if (node.has("correction")) target.correction = node.at("correction").number();
-    return target;
-  }
-  if (node.has("position")) {
-    const Node position = node.at("position");
-    if (position.array_size() != 3) position.refuse("three numbers [m]");
-    return PositionTarget{
-        {position.item(0).number(), position.item(1).number(), position.item(2).number()}};
-  }
-  node.refuse("\"joints\", \"pose\" or \"position\"");
-}
 
 TimedMove timed_of(const Node& node) {
   node.only({"space", "t_acc", "points"});
@@ -183,13 +111,18 @@ std::optional<double> wish(const Node& node, const char* key) {
 /// A step is one thing: what says two would have one of them ignored.
 void require_one_kind(const Node& node) {
   int kinds = 0;
-  for (const char* kind : {"ptp", "lin", "wait", "set_do", "timed"})
+  for (const char* kind : {"ptp", "lin", "circ", "turn", "spline", "wait", "set_do", "timed"})
     kinds += node.has(kind) ? 1 : 0;
-  if (kinds != 1) node.refuse("exactly one of ptp, lin, wait, set_do, timed");
-  if (node.has("orientation") && !node.has("lin")) {
-    node.at("orientation").refuse("no orientation but on a lin");
+  if (kinds != 1) {
+    node.refuse("exactly one of ptp, lin, circ, turn, spline, wait, set_do, timed");
   }
-  if (!node.has("ptp") && !node.has("lin")) {
+  const bool cartesian =
+      node.has("lin") || node.has("circ") || node.has("turn") || node.has("spline");
+  if (node.has("orientation") && !cartesian) {
+    node.at("orientation").refuse("no orientation but on a lin, circ, turn or spline");
+  }
+  if (node.has("via") && !node.has("circ")) node.at("via").refuse("no via but on a circ");
+  if (!node.has("ptp") && !cartesian) {
     for (const char* wish : {"zone", "speed", "acceleration", "scale"}) {
       if (node.has(wish)) node.at(wish).refuse(std::string("no ") + wish + " but on a move");
     }
@@ -197,14 +130,20 @@ void require_one_kind(const Node& node) {
 }
 
 Step step_of(const Node& node) {
-  node.only({"ptp", "lin", "orientation", "wait", "set_do", "timed", "zone", "speed",
-             "acceleration", "scale", "source"});
+  node.only({"ptp", "lin", "circ", "via", "turn", "spline", "orientation", "wait", "set_do",
+             "timed", "zone", "speed", "acceleration", "scale", "source"});
   require_one_kind(node);
   Step step;
   if (node.has("ptp")) {
     step.what = PtpMove{target_of(node.at("ptp"))};
   } else if (node.has("lin")) {
-    step.what = LinMove{target_of(node.at("lin")), value_of(node.at("orientation"), kOrientations)};
+    step.what = LinMove{target_of(node.at("lin")), orientation_of(node.at("orientation"))};
+  } else if (node.has("circ")) {
+    step.what = circ_of(node);
+  } else if (node.has("turn")) {
+    step.what = turn_of(node);
+  } else if (node.has("spline")) {
+    step.what = spline_of(node);
   } else if (node.has("wait")) {
     step.what = Wait{node.at("wait").number()};
   } else if (node.has("set_do")) {

@@ -41,6 +41,16 @@ inline ForwardKinematics puma560() {
                         {0, 0, 0}});
 }
 
+/// Standard D-H table of the maker.
+inline ForwardKinematics ur5e() {
+  return chain_from_dh({{0.1625, 0, kPi / 2},
+                        {0, -0.425, 0},
+                        {0, -0.3922, 0},
+                        {0.1333, 0, kPi / 2},
+                        {0.0997, 0, -kPi / 2},
+                        {0.0996, 0, 0}});
+}
+
 /// Textbook §5: p = (−d3 sin θ1, d3 cos θ1, 0.5 + d2).
 inline ForwardKinematics rpp() {
   return chain_from_dh(
@@ -65,6 +75,17 @@ inline ForwardKinematics seven_joints() {
                         {0.4, 0, -kPi / 2},
                         {0, 0, kPi / 2},
                         {0.126, 0, 0}});
+}
+
+/// The panda's chain: seven joints with offsets at elbow and wrist.
+inline ForwardKinematics panda() {
+  return chain_from_dh({{0.333, 0, -kPi / 2},
+                        {0, 0, kPi / 2},
+                        {0.316, 0.0825, kPi / 2},
+                        {0, -0.0825, -kPi / 2},
+                        {0.384, 0, kPi / 2},
+                        {0, 0.088, kPi / 2},
+                        {0.107, 0, 0}});
 }
 
 inline JointVector joints_in_degrees(std::initializer_list<double> degrees) {

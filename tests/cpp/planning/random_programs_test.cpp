@@ -44,6 +44,48 @@ Zone random_zone(std::mt19937& random) {
   }
 }
 
+/// An arc, a turn or a spline about the joints `q`; mostly near enough to be followed.
+decltype(Step::what) random_curve_move(const RobotModel& robot, const JointVector& near,
+                                       const JointVector& q, std::mt19937& random) {
+  std::normal_distribution<double> normal(0.0, random() % 5 == 0 ? 0.5 : 0.05);
+  const auto offset = [&]() -> Eigen::Vector3d {
+    const double x = normal(random);
+    const double y = normal(random);
+    return {x, y, normal(random)};
+  };
+  const Pose end = robot.forward().pose(q);
+  const auto orientation = static_cast<Orientation>(random() % 6);
+  switch (random() % 3) {
+    case 0: {
+      Pose via = end;
+      via.translation() += offset();
+      return CircMove{PoseTarget{via}, PoseTarget{end}, orientation};
+    }
+    case 1: {
+      TurnMove move;
+      if (random() % 4 != 0) move.center = end.translation() + offset();
+      if (random() % 2 == 0) move.axis = Eigen::Vector3d::UnitZ();
+      move.angle = 40.0 * normal(random);
+      if (random() % 2 == 0) move.pitch = normal(random);
+      move.orientation = orientation;
+      return move;
+    }
+    default: {
+      SplineMove move;
+      for (size_t k = random() % 4; k > 0; --k) {
+        JointVector point = 0.7 * q + 0.3 * near;
+        for (double& value : point) value += normal(random);
+        move.points.emplace_back(PoseTarget{robot.forward().pose(point)});
+      }
+      move.points.emplace_back(PoseTarget{end});
+      move.kind = static_cast<SplineKind>(random() % 4);
+      move.space = random() % 3 == 0 ? SplineSpace::kJoint : SplineSpace::kTool;
+      move.orientation = orientation;
+      return move;
+    }
+  }
+}
+
 MotionProgram random_program(const RobotModel& robot, std::mt19937& random) {
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
   JointVector q = random_joints(robot.limits(), random, 0.5);
@@ -61,7 +103,9 @@ MotionProgram random_program(const RobotModel& robot, std::mt19937& random) {
     if (random() % 3 == 0) options.scale = std::pow(10.0, -4.0 * uniform(random));
     if (random() % 3 == 0) options.speed = std::pow(10.0, 1.0 - 5.0 * uniform(random));
     if (random() % 3 == 0) options.acceleration = std::pow(10.0, 1.0 - 4.0 * uniform(random));
-    if (random() % 2 == 0) {
+    if (random() % 3 == 0) {
+      script.add(random_curve_move(robot, script.program().start, q, random), options);
+    } else if (random() % 2 == 0) {
       script.add(PtpMove{JointTarget{q}}, options);
     } else if (random() % 6 == 0) {
       script.add(LinMove{PositionTarget{robot.forward().pose(q).translation()}}, options);

@@ -37,6 +37,32 @@ Target random_target(std::mt19937& random, int joints) {
   }
 }
 
+TurnMove random_turn(std::mt19937& random) {
+  std::normal_distribution<double> normal;
+  TurnMove move;
+  if (random() % 2 == 0) move.center = Eigen::Vector3d(normal(random), 0.1, -0.0);
+  if (random() % 2 == 0) move.axis = Eigen::Vector3d(0.0, normal(random), 1e-300);
+  move.angle = 10.0 * normal(random);
+  move.pitch = 0.01 * normal(random);
+  move.orientation = static_cast<Orientation>(random() % 6);
+  return move;
+}
+
+SplineMove random_spline(std::mt19937& random, int joints) {
+  SplineMove move;
+  for (size_t k = 1 + random() % 5; k > 0; --k) {
+    move.points.push_back(random_target(random, joints));
+  }
+  move.kind = static_cast<SplineKind>(random() % 4);
+  move.space = random() % 2 == 0 ? SplineSpace::kTool : SplineSpace::kJoint;
+  move.orientation = static_cast<Orientation>(random() % 6);
+  if (random() % 2 == 0) move.start = random_target(random, joints);
+  for (size_t k = random() % 2 == 0 ? move.points.size() + 1 : 0; k > 0; --k) {
+    move.at.push_back(std::sqrt(static_cast<double>(random() % 1000)));
+  }
+  return move;
+}
+
 MotionProgram random_program(std::mt19937& random) {
   MotionProgram program;
   const int joints = 1 + static_cast<int>(random() % 7);
@@ -47,12 +73,22 @@ MotionProgram random_program(std::mt19937& random) {
   const size_t steps = 1 + random() % 8;
   for (size_t i = 0; i < steps; ++i) {
     Step step;
-    switch (random() % 5) {
+    switch (random() % 8) {
+      case 5:
+        step.what = CircMove{random_target(random, joints), random_target(random, joints),
+                             static_cast<Orientation>(random() % 6)};
+        break;
+      case 6:
+        step.what = random_turn(random);
+        break;
+      case 7:
+        step.what = random_spline(random, joints);
+        break;
       case 0:
         step.what = PtpMove{random_target(random, joints)};
         break;
       case 1:
-        step.what = LinMove{random_target(random, joints), static_cast<Orientation>(random() % 3)};
+        step.what = LinMove{random_target(random, joints), static_cast<Orientation>(random() % 6)};
         break;
       case 2:
         step.what = Wait{0.1 * static_cast<double>(random() % 10)};
@@ -66,8 +102,9 @@ MotionProgram random_program(std::mt19937& random) {
             1.0 / 7.0,
             static_cast<TimedSpace>(random() % 2)};
     }
-    const bool moves =
-        std::holds_alternative<PtpMove>(step.what) || std::holds_alternative<LinMove>(step.what);
+    const bool moves = !std::holds_alternative<Wait>(step.what) &&
+                       !std::holds_alternative<SetOutput>(step.what) &&
+                       !std::holds_alternative<TimedMove>(step.what);
     if (random() % 2 == 0) step.source = {"cell/α.py", 1 + static_cast<int>(random() % 99)};
     if (!moves) {
       program.steps.push_back(step);
@@ -163,6 +200,15 @@ TEST(ProgramJson, RefusesWhatItWouldOtherwiseIgnore) {
             std::string::npos);
   EXPECT_NE(message("{}").find("exactly one of"), std::string::npos);
   EXPECT_NE(message(R"({"ptp": {"joints": [0]}, "orientation": "least"})").find("orientation"),
+            std::string::npos);
+  EXPECT_NE(message(R"({"ptp": {"joints": [0]}, "via": {"joints": [0]}})").find("no via"),
+            std::string::npos);
+  EXPECT_NE(
+      message(R"({"turn": {"angle": 1, "radius": 2}, "orientation": "fixed"})").find("\"radius\""),
+      std::string::npos);
+  EXPECT_NE(message(R"({"spline": {"kind": "round", "space": "tool", "points": []},
+                        "orientation": "through"})")
+                .find("one of cubic, quintic, bezier, b_spline"),
             std::string::npos);
   EXPECT_NE(message(R"({"wait": 1, "speed": 1})").find("no speed"), std::string::npos);
   EXPECT_NE(message(R"({"ptp": {"joints": [0], "seconds": 1}})").find("no member \"seconds\""),

@@ -28,11 +28,14 @@ struct PositionTarget {
 };
 using Target = std::variant<JointTarget, PoseTarget, PositionTarget>;
 
-/// What a straight line does with the tool's orientation.
+/// What a Cartesian move does with the tool's orientation.
 enum class Orientation {
-  kLeast,  ///< least rotation between the two poses
-  kWrist,  ///< wrist joints interpolated, tool position straight
-  kFixed,  ///< stays as it is at the start; the target's is not used
+  kLeast,    ///< least rotation between the poses of start and goal
+  kWrist,    ///< wrist joints interpolated, tool position on the curve
+  kFixed,    ///< stays as it is at the start; the target's is not used
+  kTangent,  ///< turns with the curve's direction, as a nozzle that is led along it
+  kThrough,  ///< through the orientation of every point, C²
+  kFree,     ///< left to the joints: only the position is held
 };
 
 /// Straight in joint space. A pose or position target takes the branch nearest to where the move
@@ -45,6 +48,44 @@ struct PtpMove {
 struct LinMove {
   Target target;
   Orientation orientation = Orientation::kLeast;
+};
+/// Circular arc of the tool point from where the move begins through `via` to `target`. `via` is a
+/// pose or a position; its orientation counts for Orientation::kThrough only. A PositionTarget as
+/// `target` leaves the orientation free.
+struct CircMove {
+  Target via;
+  Target target;
+  Orientation orientation = Orientation::kLeast;
+};
+/// A turn of the tool point about an axis, with a travel of `pitch` [m] along it for every positive
+/// turn: an arc, a circle or more, a helix; on its own axis a screw. With kTangent the whole tool
+/// turns with it. kLeast and kThrough mean nothing here.
+struct TurnMove {
+  std::optional<Eigen::Vector3d> center;  ///< point of the axis, base frame [m]; empty: tool point
+  std::optional<Eigen::Vector3d> axis;    ///< direction, base frame; empty: z of the tool
+  double angle = 0.0;                     ///< about the axis [rad]; any size, either sign
+  double pitch = 0.0;                     ///< [m] a turn
+  Orientation orientation = Orientation::kFixed;
+};
+enum class SplineKind {
+  kCubic,    ///< natural, C², through the points
+  kQuintic,  ///< natural, C⁴, through the points
+  kBezier,   ///< by control points, the start being the first; at most 5 more
+  kBSpline,  ///< cubic, clamped and uniform, by control points
+};
+enum class SplineSpace { kTool, kJoint };
+/// A smooth curve from where the move begins through (or by) `points`, of the tool or of the
+/// joints. In tool space a JointTarget means its pose; PositionTargets leave the orientation free.
+/// In joint space a pose takes the branch nearest to the point before.
+struct SplineMove {
+  std::vector<Target> points;
+  SplineKind kind = SplineKind::kCubic;
+  SplineSpace space = SplineSpace::kTool;
+  Orientation orientation = Orientation::kThrough;  ///< tool space only
+  /// Where start and points are passed, rising; empty: by the distances. kCubic and kQuintic only.
+  std::vector<double> at;
+  /// Where the curve begins, if it has a beginning of its own: the arm must be there.
+  std::optional<Target> start;
 };
 struct Wait {
   double seconds = 0.0;
@@ -80,12 +121,12 @@ struct SourceLine {
 };
 
 struct Step {
-  std::variant<PtpMove, LinMove, Wait, SetOutput, TimedMove> what;
+  std::variant<PtpMove, LinMove, CircMove, TurnMove, SplineMove, Wait, SetOutput, TimedMove> what;
   MoveOptions options;
   SourceLine source;
 };
 
-/// How far the tool may be from the straight line it was told, outside zones.
+/// How far the tool may be from the line or curve it was told, outside zones.
 struct LineTolerance {
   double position = 5e-5;                ///< [m]
   double angle = 1.7453292519943296e-4;  ///< [rad] (0.01°)
@@ -98,7 +139,7 @@ struct MotionProgram {
   std::string robot;              ///< name of the robot it was written for
   std::string robot_fingerprint;  ///< RobotModel::fingerprint(); empty: any
   JointVector start;              ///< joints where it begins [rad or m], (n,)
-  LineTolerance tolerance;        ///< of its straight lines
+  LineTolerance tolerance;        ///< of its lines and curves
   std::vector<Step> steps;
 };
 
