@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "profile/axis_problem.hpp"
 #include "profile/constant_jerk.hpp"
+#include "profile/move_problem.hpp"
 
 namespace viapoint {
 
@@ -12,7 +12,8 @@ std::string_view to_string(MoveStatus status) noexcept {
     case MoveStatus::kSolved:
       return "solved";
     case MoveStatus::kBadLimits:
-      return "every minimum must be negative, every maximum positive, and both finite";
+      return "every minimum must be negative, every maximum positive, both finite; those of the "
+             "position must be in order";
     case MoveStatus::kBadState:
       return "start and end must be finite";
     case MoveStatus::kEndVelocity:
@@ -27,6 +28,14 @@ std::string_view to_string(MoveStatus status) noexcept {
       return "start or end do not move along the straight line between them";
     case MoveStatus::kBadSize:
       return "start, end and limits must have the same number of joints, 1 to 16";
+    case MoveStatus::kEndPosition:
+      return "the end is outside the position limits";
+    case MoveStatus::kStartTooFast:
+      return "the start moves too fast toward a position limit to stop before it";
+    case MoveStatus::kEndTooFast:
+      return "the end can only be arrived at from beyond a position limit";
+    case MoveStatus::kNoRoom:
+      return "the position limits leave too little room for the motion";
   }
   return "unknown status";
 }
@@ -60,11 +69,9 @@ void AxisMove::append(double jerk, double seconds) noexcept {
 
 MoveStatus quickest_move(const AxisState& start, const AxisState& end, const AxisLimits& limits,
                          AxisMove& move) noexcept {
-  AxisProblem problem;
-  const MoveStatus status = problem.set(start, end, limits, move);
-  if (status != MoveStatus::kSolved) return status;
-  problem.solve_quickest();
-  problem.append_quickest(move);
+  MoveProblem problem;
+  const MoveStatus status = problem.solve(start, end, limits, move);
+  if (status == MoveStatus::kSolved) problem.append_quickest(move);
   return status;
 }
 

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "profile/constant_jerk.hpp"
+#include "profile/mirror_images.hpp"
 
 namespace viapoint {
 namespace {
@@ -45,13 +46,6 @@ MoveStatus end_status(const AxisState& end, const AxisLimits& l) noexcept {
     return MoveStatus::kEndUnreachable;
   }
   return MoveStatus::kSolved;
-}
-
-AxisState mirrored(const AxisState& s) noexcept { return {-s.q, -s.qd, -s.qdd, -s.qddd}; }
-
-AxisLimits mirrored(const AxisLimits& l) noexcept {
-  return {-l.velocity_max,     -l.velocity_min, -l.acceleration_max,
-          -l.acceleration_min, -l.jerk_max,     -l.jerk_min};
 }
 
 struct Brake {

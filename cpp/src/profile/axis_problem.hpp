@@ -1,6 +1,6 @@
 /// @file
 /// One axis' way from state to state: the quickest, those of a given duration, and which durations
-/// there are.
+/// there are. Position limits are left aside here.
 ///
 /// What is gained in a fixed time T is an interval [least(T), most(T)]: the limits are convex and
 /// the dynamics linear. `most` belongs to the upward family, `least` to the upward family of the
@@ -33,6 +33,8 @@ class AxisProblem {
   [[nodiscard]] double next_duration(double duration) noexcept;
   /// A motion that lasts `duration`, appended. @pre next_duration returned it
   void append_lasting(double duration, AxisMove& move) noexcept;
+  /// From rest to rest, and nothing to come back from: the quickest can be slowed down to any.
+  [[nodiscard]] bool is_rest_to_rest() const noexcept;
 
  private:
   /// Phases of one member; accelerations at their starts are known without integration.
@@ -54,7 +56,6 @@ class AxisProblem {
   void append_blend(double share, const Chain& most, const Chain& least,
                     AxisMove& move) const noexcept;
   void append_slowed(double duration, AxisMove& move) const noexcept;
-  [[nodiscard]] bool is_rest_to_rest() const noexcept;
   void solve_lasting(double t) noexcept;
 
   AxisLimits limits_;

@@ -3,16 +3,25 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 
-#include "profile/axis_problem.hpp"
+#include "profile/move_problem.hpp"
 
 namespace viapoint {
 namespace {
 
 /// Share of a state by which it may leave the line through rounding.
 constexpr double kLineSlack = 1e-9;
+/// Share of a position by which it may be beyond a limit through rounding.
+constexpr double kPositionSlack = 1e-15;
 /// Share of a cycle by which a duration may be over a whole number of them.
 constexpr double kCycleSlack = 1e-9;
+
+/// A problem that is made only where there is an axis.
+union Place {
+  Place() noexcept {}
+  MoveProblem problem;
+};
 
 /// The least duration both asked for and a whole number of cycles.
 double rounded_up(double duration, const StateToStateOptions& options) noexcept {
@@ -26,14 +35,19 @@ double rounded_up(double duration, const StateToStateOptions& options) noexcept 
 
 /// The least duration from `duration` on that is a whole number of cycles and that every axis has a
 /// motion of. Infinite where there is none within as many rounds as there can be intervals.
-double common_duration(std::span<AxisProblem> problems, double duration,
+/// @param begun what each problem's solve() has begun
+double common_duration(std::span<Place> problems, std::span<const AxisMove> begun, double duration,
                        const StateToStateOptions& options) noexcept {
   double common = rounded_up(duration, options);
-  // Every axis has at most three intervals of durations it cannot have.
-  const size_t rounds = 3 * problems.size() + 1;
+  // Every axis has at most three intervals of durations it cannot have, and one more that is passed
+  // over at position limits; the end of that one may lie in a gap between two cycles again.
+  const size_t rounds = 8 * problems.size() + 1;
   for (size_t round = 0; round < rounds; ++round) {
     double next = common;
-    for (AxisProblem& problem : problems) next = std::max(next, problem.next_duration(next));
+    for (size_t i = 0; i < problems.size(); ++i) {
+      next = std::max(next, problems[i].problem.next_duration(next, begun[i]));
+      if (!std::isfinite(next)) return next;
+    }
     if (next == common) return common;
     common = rounded_up(next, options);
   }
@@ -73,29 +87,32 @@ MoveStatus StateToState::plan_apart(std::span<const AxisState> start,
                                     std::span<const AxisLimits> limits,
                                     const StateToStateOptions& options) noexcept {
   const size_t n = start.size();
-  std::array<AxisProblem, kMaxJoints> problems;
+  std::array<Place, kMaxJoints> problems;
   std::array<double, kMaxJoints> least{};
   for (size_t i = 0; i < n; ++i) {
-    const MoveStatus status = problems[i].set(start[i], end[i], limits[i], axes_[i]);
+    const MoveStatus status =
+        std::construct_at(&problems[i].problem)->solve(start[i], end[i], limits[i], axes_[i]);
     if (status != MoveStatus::kSolved) {
       culprit_ = static_cast<int>(i);
       return status;
     }
-    least[i] = problems[i].solve_quickest();
+    least[i] = problems[i].problem.duration();
   }
   const bool together = options.synchronization == Synchronization::kTime;
   if (together) {
     const double longest = *std::max_element(least.begin(), least.begin() + static_cast<long>(n));
-    duration_ = common_duration({problems.data(), n}, longest, options);
+    duration_ = common_duration({problems.data(), n}, axes_, longest, options);
     if (!std::isfinite(duration_)) return MoveStatus::kDurationImpossible;
   }
   for (size_t i = 0; i < n; ++i) {
-    const double own = together ? duration_ : common_duration({&problems[i], 1}, least[i], options);
+    const double own = together
+                           ? duration_
+                           : common_duration({&problems[i], 1}, {&axes_[i], 1}, least[i], options);
     if (!std::isfinite(own)) return MoveStatus::kDurationImpossible;
     if (own == least[i]) {
-      problems[i].append_quickest(axes_[i]);
+      problems[i].problem.append_quickest(axes_[i]);
     } else {
-      problems[i].append_lasting(own, axes_[i]);
+      problems[i].problem.append_lasting(own, axes_[i]);
     }
     duration_ = std::max(duration_, own);
   }
@@ -181,11 +198,23 @@ MoveStatus StateToState::plan_line(std::span<const AxisState> start, std::span<c
   }
 
   const double none = std::numeric_limits<double>::infinity();
-  line.limits = {-none, none, -none, none, -none, none};
+  line.limits = {-none, none, -none, none, -none, none, -none, none};
   for (size_t i = 0; i < n; ++i) {
     const AxisLimits& l = limits[i];
     const double d = line.direction[i];
+    if (!(l.position_min <= l.position_max)) {
+      culprit_ = static_cast<int>(i);
+      return MoveStatus::kBadLimits;
+    }
+    if (!(end[i].q >= l.position_min - kPositionSlack * std::abs(end[i].q) &&
+          end[i].q <= l.position_max + kPositionSlack * std::abs(end[i].q))) {
+      culprit_ = static_cast<int>(i);
+      return MoveStatus::kEndPosition;
+    }
     if (d == 0.0) continue;
+    tighten(d, std::min(l.position_min - start[i].q, d * line.end.q),
+            std::max(l.position_max - start[i].q, d * line.end.q), line.limits.position_min,
+            line.limits.position_max);
     tighten(d, l.velocity_min, l.velocity_max, line.limits.velocity_min, line.limits.velocity_max);
     tighten(d, l.acceleration_min, l.acceleration_max, line.limits.acceleration_min,
             line.limits.acceleration_max);
@@ -193,14 +222,15 @@ MoveStatus StateToState::plan_line(std::span<const AxisState> start, std::span<c
   }
 
   AxisMove law;
-  AxisProblem problem;
-  const MoveStatus status = problem.set(line.start, line.end, line.limits, law);
+  Place place;
+  MoveProblem& problem = *std::construct_at(&place.problem);
+  const MoveStatus status = problem.solve(line.start, line.end, line.limits, law);
   if (status != MoveStatus::kSolved) {
     culprit_ = static_cast<int>(leader);
     return status;
   }
-  const double quickest = problem.solve_quickest();
-  duration_ = common_duration({&problem, 1}, quickest, options);
+  const double quickest = problem.duration();
+  duration_ = common_duration({&place, 1}, {&law, 1}, quickest, options);
   if (!std::isfinite(duration_)) return MoveStatus::kDurationImpossible;
   if (duration_ == quickest) {
     problem.append_quickest(law);

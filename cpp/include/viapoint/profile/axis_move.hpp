@@ -1,20 +1,24 @@
 /// @file
 /// One axis from any position, velocity and acceleration to any other, within limits on velocity,
-/// acceleration and jerk that may differ by direction.
+/// acceleration and jerk that may differ by direction, and on position where there are such.
 #pragma once
 
 #include <array>
+#include <limits>
 #include <string_view>
 
 #include "viapoint/profile/jerk_profile.hpp"
 
 namespace viapoint {
 
-/// Limits of one axis; every minimum is negative, every maximum positive, all finite.
+/// Limits of one axis; every minimum is negative, every maximum positive, all finite. Those of the
+/// position are any two numbers in order, infinite where there is no limit.
 struct AxisLimits {
   double velocity_min = 0.0, velocity_max = 0.0;
   double acceleration_min = 0.0, acceleration_max = 0.0;
   double jerk_min = 0.0, jerk_max = 0.0;
+  double position_min = -std::numeric_limits<double>::infinity();
+  double position_max = std::numeric_limits<double>::infinity();
 
   /// The same limits in both directions.
   [[nodiscard]] static constexpr AxisLimits symmetric(double velocity, double acceleration,
@@ -34,6 +38,10 @@ enum class MoveStatus : unsigned char {
   kDurationImpossible,  ///< no motion within the limits lasts exactly that long
   kNotParallel,         ///< the start or the end does not move along the straight line
   kBadSize,             ///< no joints, more than kMaxJoints, or sizes that differ
+  kEndPosition,         ///< the end lies outside the position limits
+  kStartTooFast,        ///< the start cannot stop before a position limit
+  kEndTooFast,          ///< whatever arrives like that was beyond a position limit before
+  kNoRoom,              ///< the position limits leave too little room in between
 };
 
 /// The status in words, for messages. Real-time: safe.
@@ -43,8 +51,9 @@ enum class MoveStatus : unsigned char {
 /// carry the rounding of the one before: at rest and on a limit the rates are exact.
 /// Real-time: safe. Threads: const methods.
 struct AxisMove {
-  /// Two to come back inside the limits, and the switching times of two motions merged.
-  static constexpr int kMaxPhases = 16;
+  /// Two to come back inside the limits, and then the switching times of two motions merged, or the
+  /// legs from one position limit to another.
+  static constexpr int kMaxPhases = 40;
 
   struct Phase {
     double duration;  ///< [s], > 0
@@ -72,13 +81,17 @@ struct AxisMove {
 /// Exact but for rounding: states meet within 1e-9 of the size of the move, also where limits lie
 /// decades apart. Digits are lost where the two jerk limits differ by a factor of more than 1e4,
 /// and where the velocity has to change by less than its own rounding.
+/// Position limits hold all the way, to 1e-9 of the size of the move. A start outside them comes in
+/// and stays in; it moves farther out only where it is too fast not to, and no farther than the
+/// quickest stop would take it. Where the quickest motion touches the limits more than twice, the
+/// one found may be slower: it comes to rest in between.
 /// @return kSolved, or why there is no such motion; `move` is then left alone
 /// Real-time: safe. Threads: none shared.
 [[nodiscard]] MoveStatus quickest_move(const AxisState& start, const AxisState& end,
                                        const AxisLimits& limits, AxisMove& move) noexcept;
 
 /// The quickest motion to the velocity and acceleration of `end`, wherever that is; end.q is not
-/// read. What a stop is made of. Otherwise as quickest_move.
+/// read, nor are the position limits. What a stop is made of. Otherwise as quickest_move.
 [[nodiscard]] MoveStatus quickest_velocity_change(const AxisState& start, const AxisState& end,
                                                   const AxisLimits& limits,
                                                   AxisMove& move) noexcept;

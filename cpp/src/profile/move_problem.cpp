@@ -1,0 +1,210 @@
+#include "profile/move_problem.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+namespace viapoint {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::infinity();
+/// Share of the size of a move by which it may be beyond a wall, and the positions' own rounding.
+constexpr double kWallSlack = 1e-10;
+constexpr double kPositionRounding = 1e-15;
+/// Durations looked at for one that stays between the walls, and halvings of what is left then.
+constexpr int kProbes = 8;
+constexpr int kHalvings = 12;
+/// Share of a duration up to which longer ones are looked at where the axis cannot rest.
+constexpr double kLongest = 4.0;
+/// How often that is done before the axis asks for as much time as it needs to rest in between.
+constexpr int kSearches = 2;
+
+/// The phases of `leg` after those of `whole`; false where they are too many.
+bool join(const AxisMove& leg, AxisMove& whole) noexcept {
+  if (whole.phases + leg.phases > AxisMove::kMaxPhases) return false;
+  for (int i = 0; i < leg.phases; ++i) {
+    whole.phase[static_cast<size_t>(whole.phases++)] = leg.phase[static_cast<size_t>(i)];
+  }
+  whole.total += leg.total;
+  whole.end = leg.end;
+  return true;
+}
+
+}  // namespace
+
+MoveStatus MoveProblem::solve(const AxisState& start, const AxisState& end,
+                              const AxisLimits& limits, AxisMove& move) noexcept {
+  const double low = limits.position_min, high = limits.position_max;
+  if (!(low <= high && low < kNone && high > -kNone)) return MoveStatus::kBadLimits;
+  const MoveStatus status = free_.set(start, end, limits, move);
+  if (status != MoveStatus::kSolved) return status;
+  duration_ = free_.solve_quickest();
+  has_walls_ = low > -kNone || high < kNone;
+  if (!has_walls_) return status;
+  std::construct_at(&between_);
+  between_.to = end;
+  return solve_between_walls(start, limits, move);
+}
+
+MoveStatus MoveProblem::solve_between_walls(const AxisState& start, const AxisLimits& limits,
+                                            const AxisMove& begun) noexcept {
+  between_.has_calm = false;
+  between_.searches = 0;
+  between_.limits = limits;
+  between_.limits.position_min = -kNone;
+  between_.limits.position_max = kNone;
+  between_.from = begun.end;
+  between_.begun = begun.total;
+
+  AxisMove free = begun;
+  free_.append_quickest(free);
+  const Extent extent = extent_of(free);
+  const double low = limits.position_min, high = limits.position_max;
+  between_.walls = {low, high,
+                    kWallSlack * (extent.high - extent.low) +
+                        kPositionRounding * (std::abs(start.q) + std::abs(between_.to.q)),
+                    low, high};
+  if (!(between_.to.q <= high + between_.walls.slack &&
+        between_.to.q >= low - between_.walls.slack)) {
+    return MoveStatus::kEndPosition;
+  }
+  if (start.q > high + between_.walls.slack || start.q < low - between_.walls.slack) {
+    AxisMove stop;
+    const MoveStatus status = quickest_velocity_change(start, {}, between_.limits, stop);
+    if (status != MoveStatus::kSolved) return status;
+    const Extent reach = extent_of(stop);
+    between_.walls.start_low = std::min(low, reach.low);
+    between_.walls.start_high = std::max(high, reach.high);
+  }
+  if (!between_.walls.hold(begun)) return MoveStatus::kStartTooFast;
+  between_.route.stops = 0;
+  if (between_.walls.hold(free)) return MoveStatus::kSolved;
+
+  RouteSearch search(between_.from, between_.to, between_.limits, between_.walls);
+  const MoveStatus status = search.admit();
+  if (status != MoveStatus::kSolved) return status;
+  between_.walls = search.walls();
+  between_.route = search.quickest();
+  between_.calm = search.calm();
+  between_.has_calm = true;
+  if (!(between_.route.duration <= between_.calm.duration)) between_.route = between_.calm;
+  if (!std::isfinite(between_.route.duration)) return MoveStatus::kNoRoom;
+  duration_ = between_.begun + between_.route.duration;
+  return MoveStatus::kSolved;
+}
+
+void MoveProblem::append_quickest(AxisMove& move) const noexcept {
+  if (has_walls_ && between_.route.stops > 0) {
+    (void)append_route(between_.route, -1, 0.0, move);
+    move.total = duration_;
+  } else {
+    free_.append_quickest(move);
+  }
+}
+
+bool MoveProblem::append_route(const Route& route, int stretched, double more,
+                               AxisMove& move) const noexcept {
+  AxisState here = between_.from;
+  for (int i = 0; i <= route.stops; ++i) {
+    const AxisState& next = i < route.stops ? route.stop[static_cast<size_t>(i)] : between_.to;
+    AxisProblem problem;
+    AxisMove leg;
+    if (problem.set(here, next, between_.limits, leg) != MoveStatus::kSolved) return false;
+    const double quickest = problem.solve_quickest();
+    const double wanted = i == stretched ? quickest + more : quickest;
+    if (wanted == quickest) {
+      problem.append_quickest(leg);
+    } else if (problem.next_duration(wanted) == wanted) {
+      problem.append_lasting(wanted, leg);
+    } else {
+      return false;
+    }
+    if (!join(leg, move)) return false;
+    if (stretched < 0 && more > 0.0 && i == route.rest) {
+      if (move.phases == AxisMove::kMaxPhases) return false;
+      move.append(0.0, more);
+    }
+    here = next;
+  }
+  return true;
+}
+
+const Route& MoveProblem::calm() noexcept {
+  if (!between_.has_calm) {
+    RouteSearch search(between_.from, between_.to, between_.limits, between_.walls);
+    (void)
+        search.admit();  // the walls may have to give way to rounding; that there is a way is known
+    between_.calm = search.calm();
+  }
+  between_.has_calm = true;
+  return between_.calm;
+}
+
+bool MoveProblem::find_stretched(double more, AxisMove& move) const noexcept {
+  const AxisMove begun = move;
+  for (int leg = between_.route.stops; leg >= 0; --leg) {
+    if (append_route(between_.route, leg, more, move) && between_.walls.hold(move, begun.phases))
+      return true;
+    move = begun;
+  }
+  return false;
+}
+
+bool MoveProblem::find_lasting(double duration, AxisMove& move) noexcept {
+  const AxisMove begun = move;
+  bool found = false;
+  if (free_.next_duration(duration) == duration) {
+    free_.append_lasting(duration, move);
+    found = between_.walls.hold(move, begun.phases);
+    if (!found) move = begun;
+  }
+  if (!found && between_.route.stops > 0) found = find_stretched(duration - duration_, move);
+  if (!found && duration >= between_.begun + calm().duration) {
+    found =
+        append_route(between_.calm, -1, duration - between_.begun - between_.calm.duration, move);
+    if (!found) move = begun;
+  }
+  if (found) move.total = duration;
+  return found;
+}
+
+double MoveProblem::next_duration(double duration, const AxisMove& begun) noexcept {
+  if (!has_walls_) return free_.next_duration(duration);
+  if (duration == duration_ || free_.is_rest_to_rest()) return duration;
+  AxisMove scratch = begun;
+  if (find_lasting(duration, scratch)) return duration;
+  // From the calm way's on all last. An axis that is too fast to rest anywhere has none.
+  const double calm_duration = between_.begun + calm().duration;
+  const bool can_rest = std::isfinite(calm_duration);
+  if (can_rest && duration >= calm_duration) return kNone;
+  const double last = can_rest ? calm_duration : kLongest * duration;
+  if (++between_.searches > kSearches) return can_rest ? last : kNone;
+  double bad = duration, good = can_rest ? last : kNone;
+  for (int i = 1; i < kProbes; ++i) {
+    const double t = duration + (last - duration) * i / kProbes;
+    scratch = begun;
+    if (find_lasting(t, scratch)) {
+      good = t;
+      break;
+    }
+    bad = t;
+  }
+  if (good == kNone) return good;
+  for (int i = 0; i < kHalvings; ++i) {
+    const double t = 0.5 * (bad + good);
+    scratch = begun;
+    (find_lasting(t, scratch) ? good : bad) = t;
+  }
+  return good;
+}
+
+void MoveProblem::append_lasting(double duration, AxisMove& move) noexcept {
+  if (!has_walls_ || free_.is_rest_to_rest()) {
+    free_.append_lasting(duration, move);
+  } else {
+    (void)find_lasting(duration, move);
+  }
+}
+
+}  // namespace viapoint

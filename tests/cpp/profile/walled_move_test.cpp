@@ -1,0 +1,401 @@
+// Position limits during the motion.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "profile/axis_move_checks.hpp"
+#include "viapoint/profile/state_to_state.hpp"
+
+namespace viapoint {
+namespace {
+
+using testing::AxisRequest;
+using testing::expect_connected;
+using testing::expect_limits;
+using testing::log_uniform;
+using testing::uniform;
+
+constexpr double kNone = std::numeric_limits<double>::infinity();
+
+struct Extent {
+  double low, high;
+};
+
+/// Of every phase: its ends, and where its velocity vanishes.
+Extent extent_of(const AxisMove& move) {
+  Extent extent{move.at(0.0).q, move.at(0.0).q};
+  const auto take = [&](long double q) {
+    extent.low = std::min(extent.low, static_cast<double>(q));
+    extent.high = std::max(extent.high, static_cast<double>(q));
+  };
+  for (int i = 0; i < move.phases; ++i) {
+    const auto& [duration, from] = move.phase[static_cast<size_t>(i)];
+    const auto q = [&, f = from](long double t) {
+      return f.q + t * (f.qd + t * (f.qdd / 2.0L + f.qddd * t / 6.0L));
+    };
+    take(q(duration));
+    const long double a = from.qdd, j = from.qddd, under = a * a - 2.0L * j * from.qd;
+    std::vector<long double> turns;
+    if (j == 0.0L && a != 0.0L) turns.push_back(-from.qd / a);
+    if (j != 0.0L && under > 0.0L) {
+      turns.push_back((-a + std::sqrt(under)) / j);
+      turns.push_back((-a - std::sqrt(under)) / j);
+    }
+    for (const long double t : turns) {
+      if (t > 0.0L && t < duration) take(q(t));
+    }
+  }
+  take(move.end.q);
+  return extent;
+}
+
+AxisLimits without_walls(AxisLimits limits) {
+  limits.position_min = -kNone;
+  limits.position_max = kNone;
+  return limits;
+}
+
+void expect_inside(const AxisLimits& limits, const AxisMove& move) {
+  const Extent extent = extent_of(move);
+  const double slack = 1e-9 * (extent.high - extent.low) + 1e-15 * std::abs(extent.high);
+  EXPECT_LE(extent.high, limits.position_max + slack);
+  EXPECT_GE(extent.low, limits.position_min - slack);
+}
+
+/// Walls that the quickest motion without them would break, but that some motion keeps: often just
+/// about.
+AxisRequest random_walled_request(std::mt19937_64& random) {
+  for (;;) {
+    AxisRequest r = testing::random_request(random, 0.7);
+    r.end.q = r.start.q + (r.end.q - r.start.q) * log_uniform(random, 1e-3, 1.0);
+    AxisMove move;
+    if (quickest_move(r.start, r.end, r.limits, move) != MoveStatus::kSolved) continue;
+    const Extent free = extent_of(move);
+    double high = std::max(r.start.q, r.end.q), low = std::min(r.start.q, r.end.q);
+    if (!(free.high > high + 1e-6) && !(free.low < low - 1e-6)) continue;
+    for (int tries = 0; tries < 12; ++tries) {
+      const AxisLimits before = r.limits;
+      const bool both = random() % 4 == 0;
+      if (free.high > high) r.limits.position_max = uniform(random, high, free.high);
+      if (free.low < low && (both || !(free.high > high))) {
+        r.limits.position_min = uniform(random, free.low, low);
+      }
+      if (random() % 4 == 0) {
+        r.limits.position_max = std::max(r.start.q, r.end.q) + log_uniform(random, 1e-4, 3.0);
+      }
+      if (quickest_move(r.start, r.end, r.limits, move) == MoveStatus::kSolved) return r;
+      if (std::isfinite(r.limits.position_max)) high = r.limits.position_max;
+      if (std::isfinite(r.limits.position_min)) low = r.limits.position_min;
+      r.limits = before;
+      high = std::min(high, free.high);
+      low = std::max(low, free.low);
+    }
+  }
+}
+
+TEST(PositionLimits, HoldAllTheWay) {
+  int longer = 0;
+  for (int seed = 0; seed < 10000; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937_64 random(static_cast<std::uint64_t>(seed));
+    const AxisRequest r = random_walled_request(random);
+    AxisMove move, free;
+    ASSERT_EQ(quickest_move(r.start, r.end, r.limits, move), MoveStatus::kSolved);
+    ASSERT_EQ(quickest_move(r.start, r.end, without_walls(r.limits), free), MoveStatus::kSolved);
+    expect_connected(r, move);
+    expect_limits(r, move);
+    expect_inside(r.limits, move);
+    EXPECT_GE(move.total, free.total * (1.0 - 1e-12));
+    if (move.total > free.total * (1.0 + 1e-9)) ++longer;
+    if (HasFailure()) return;
+  }
+  EXPECT_GT(longer, 2500);  // that the walls were in the way
+}
+
+/// The sum of the two ways, infinite where one leaves the walls.
+double through(const AxisRequest& r, const AxisState& middle) {
+  AxisMove first, second;
+  const AxisLimits free = without_walls(r.limits);
+  if (quickest_move(r.start, middle, free, first) != MoveStatus::kSolved ||
+      quickest_move(middle, r.end, free, second) != MoveStatus::kSolved) {
+    return kNone;
+  }
+  for (const AxisMove* move : {&first, &second}) {
+    const Extent extent = extent_of(*move);
+    if (extent.high > r.limits.position_max || extent.low < r.limits.position_min) return kNone;
+  }
+  return first.total + second.total;
+}
+
+TEST(PositionLimits, CostNoMoreTimeThanAnyTouchOfAFineGrid) {
+  int compared = 0;
+  for (int seed = 0; seed < 600; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937_64 random(static_cast<std::uint64_t>(seed));
+    const AxisRequest r = random_walled_request(random);
+    AxisMove move;
+    ASSERT_EQ(quickest_move(r.start, r.end, r.limits, move), MoveStatus::kSolved);
+    double best = kNone;
+    for (int i = 0; i <= 400; ++i) {
+      const double share = i / 400.0;
+      const AxisState high{r.limits.position_max, 0.0, share * r.limits.acceleration_min, 0.0};
+      const AxisState low{r.limits.position_min, 0.0, share * r.limits.acceleration_max, 0.0};
+      for (const AxisState& touch : {high, low}) {
+        // Getting rid of the acceleration must not break the velocity limits.
+        const double away = touch.qdd < 0.0 ? r.limits.jerk_max : r.limits.jerk_min;
+        const double after = -0.5 * touch.qdd * touch.qdd / away;
+        const bool holds = after <= r.limits.velocity_max && after >= r.limits.velocity_min;
+        if (std::isfinite(touch.q) && holds) best = std::min(best, through(r, touch));
+      }
+    }
+    if (std::isfinite(best)) ++compared;
+    EXPECT_LE(move.total, best * (1.0 + 1e-7));
+    if (HasFailure()) return;
+  }
+  EXPECT_GT(compared, 300);
+}
+
+TEST(PositionLimits, CostNoMoreTimeThanRandomDetours) {
+  int compared = 0;
+  for (int seed = 0; seed < 1000; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937_64 random(static_cast<std::uint64_t>(seed));
+    const AxisRequest r = random_walled_request(random);
+    AxisMove move;
+    ASSERT_EQ(quickest_move(r.start, r.end, r.limits, move), MoveStatus::kSolved);
+    const Extent extent = extent_of(move);
+    for (int k = 0; k < 100; ++k) {
+      AxisState middle = testing::random_state(random, r.limits);
+      middle.q = uniform(random, extent.low, extent.high);
+      const double other = through(r, middle);
+      if (std::isfinite(other)) ++compared;
+      EXPECT_GE(other, move.total * (1.0 - 1e-9));
+    }
+    if (HasFailure()) return;
+  }
+  EXPECT_GT(compared, 5000);
+}
+
+constexpr AxisLimits between(double low, double high) {
+  AxisLimits limits = AxisLimits::symmetric(1.0, 2.0, 10.0);
+  limits.position_min = low;
+  limits.position_max = high;
+  return limits;
+}
+
+TEST(PositionLimits, NameWhatCannotBe) {
+  AxisMove move;
+  const auto status = [&](const AxisState& start, const AxisState& end, const AxisLimits& limits) {
+    return quickest_move(start, end, limits, move);
+  };
+  EXPECT_EQ(status({}, {1.0, 0.0, 0.0, 0.0}, between(0.0, 0.9)), MoveStatus::kEndPosition);
+  EXPECT_EQ(status({}, {-0.1, 0.0, 0.0, 0.0}, between(0.0, 0.9)), MoveStatus::kEndPosition);
+  // From 1 to 0 at jerk 10 and acceleration 2: 0.2 s falling, 0.4 s held, and then it stands. The
+  // way is 0.2 − 10·0.008/6 + 0.8·0.4 − 2·0.08 = 0.3467.
+  const AxisState fast{0.0, 1.0, 0.0, 0.0};
+  EXPECT_EQ(status(fast, {}, between(-1.0, 0.3466)), MoveStatus::kStartTooFast);
+  EXPECT_EQ(status(fast, {}, between(-1.0, 0.3467)), MoveStatus::kSolved);
+  EXPECT_EQ(status({0.0, -1.0, 0.0, 0.0}, {}, between(-0.3466, 1.0)), MoveStatus::kStartTooFast);
+  EXPECT_EQ(status({}, {0.0, -1.0, 0.0, 0.0}, between(-1.0, 0.3466)), MoveStatus::kEndTooFast);
+  EXPECT_EQ(status({}, {0.0, -1.0, 0.0, 0.0}, between(-1.0, 0.3467)), MoveStatus::kSolved);
+  // At the upper wall it brakes at 2, and takes ⅔·2³/10² = 0.0533 to get over that.
+  const AxisState slow{0.0, 0.2, 0.0, 0.0};
+  EXPECT_EQ(status(slow, {}, between(-0.005, 0.02667)), MoveStatus::kNoRoom);
+  EXPECT_EQ(status(slow, {}, between(-0.0268, 0.02667)), MoveStatus::kSolved);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(status({}, {}, between(0.1, -0.1)), MoveStatus::kBadLimits);
+  EXPECT_EQ(status({}, {}, between(nan, 1.0)), MoveStatus::kBadLimits);
+  EXPECT_EQ(status({}, {}, between(kNone, kNone)), MoveStatus::kBadLimits);
+  EXPECT_EQ(status({}, {}, between(-kNone, -kNone)), MoveStatus::kBadLimits);
+  EXPECT_EQ(status({}, {}, between(0.0, 0.0)), MoveStatus::kSolved);
+  for (int i = 0; i <= static_cast<int>(MoveStatus::kNoRoom); ++i) {
+    EXPECT_NE(to_string(static_cast<MoveStatus>(i)), "unknown status");
+  }
+}
+
+TEST(PositionLimits, ChangeNothingWhereTheyAreNotMet) {
+  for (int seed = 0; seed < 3000; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937_64 random(static_cast<std::uint64_t>(seed));
+    AxisRequest r = testing::random_request(random, 0.7);
+    AxisMove free, move;
+    ASSERT_EQ(quickest_move(r.start, r.end, r.limits, free), MoveStatus::kSolved);
+    const Extent extent = extent_of(free);
+    r.limits.position_min = extent.low;
+    r.limits.position_max = extent.high;
+    ASSERT_EQ(quickest_move(r.start, r.end, r.limits, move), MoveStatus::kSolved);
+    EXPECT_EQ(move.total, free.total);
+    EXPECT_EQ(move.phases, free.phases);
+    if (HasFailure()) return;
+  }
+}
+
+/// Limits that were lowered: the start is outside, and may move outward still.
+TEST(PositionLimits, LetAStartThatIsOutsideComeIn) {
+  int solved = 0;
+  for (int seed = 0; seed < 5000; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937_64 random(static_cast<std::uint64_t>(seed));
+    AxisRequest r = testing::random_request(random, 0.7);
+    r.end.qd = r.end.qdd = 0.0;
+    r.end.q = r.start.q - log_uniform(random, 1e-2, 10.0);
+    r.limits.position_max = uniform(random, r.end.q, r.start.q);
+    AxisMove move, stop;
+    ASSERT_EQ(quickest_move(r.start, r.end, r.limits, move), MoveStatus::kSolved);
+    ASSERT_EQ(quickest_velocity_change(r.start, {}, r.limits, stop), MoveStatus::kSolved);
+    expect_connected(r, move);
+    expect_limits(r, move);
+    // No farther out than it needs to stop, and once inside it stays.
+    EXPECT_LE(extent_of(move).high, extent_of(stop).high + 1e-9 * (r.start.q - r.end.q));
+    bool inside = false;
+    for (int i = 0; i <= 500; ++i) {
+      const double q = move.at(move.total * i / 500.0).q;
+      if (q < r.limits.position_max) inside = true;
+      if (!inside) continue;
+      EXPECT_LE(q, r.limits.position_max + 1e-9 * (r.start.q - r.end.q));
+    }
+    ++solved;
+    if (HasFailure()) return;
+  }
+  EXPECT_EQ(solved, 5000);
+}
+
+TEST(PositionLimits, HoldForEverySynchronizationAndDuration) {
+  int planned = 0, as_asked = 0;
+  for (int seed = 0; seed < 10000; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937_64 random(static_cast<std::uint64_t>(seed));
+    std::vector<AxisRequest> all;
+    const size_t axes = 1 + random() % 3;
+    double slowest = 0.0;
+    for (size_t i = 0; i < axes; ++i) {
+      AxisRequest r = i == 0 ? random_walled_request(random) : testing::random_request(random, 0.7);
+      if (i == 0 && random() % 2 == 0) {  // one that can rest at its end
+        r.end.qd = r.end.qdd = 0.0;
+        AxisMove move;
+        if (quickest_move(r.start, r.end, r.limits, move) != MoveStatus::kSolved) {
+          r = random_walled_request(random);
+        }
+      }
+      AxisMove move;
+      ASSERT_EQ(quickest_move(r.start, r.end, r.limits, move), MoveStatus::kSolved);
+      slowest = std::max(slowest, move.total);
+      all.push_back(r);
+    }
+    std::vector<AxisState> start, end;
+    std::vector<AxisLimits> limits;
+    for (const AxisRequest& r : all) {
+      start.push_back(r.start);
+      end.push_back(r.end);
+      limits.push_back(r.limits);
+    }
+    StateToStateOptions options;
+    options.synchronization = random() % 4 == 0 ? Synchronization::kNone : Synchronization::kTime;
+    if (random() % 2 == 0) options.least_duration = slowest * uniform(random, 1.0, 2.5);
+    if (random() % 3 == 0) options.cycle = 0.004;
+    StateToState motion;
+    const MoveStatus status = motion.plan(start, end, limits, options);
+    // Where an axis is too fast to rest between its walls it cannot wait for the others.
+    if (status == MoveStatus::kDurationImpossible) continue;
+    ASSERT_EQ(status, MoveStatus::kSolved);
+    ++planned;
+    const double wanted = std::max(slowest, options.least_duration);
+    if (motion.duration() <= wanted + options.cycle) ++as_asked;
+    for (size_t i = 0; i < axes; ++i) {
+      SCOPED_TRACE("axis " + std::to_string(i));
+      const AxisMove& move = motion.axis(static_cast<int>(i));
+      expect_connected(all[i], move);
+      expect_limits(all[i], move);
+      expect_inside(limits[i], move);
+      if (options.synchronization == Synchronization::kTime) {
+        EXPECT_EQ(move.total, motion.duration());
+      }
+    }
+    if (HasFailure()) return;
+  }
+  EXPECT_GT(planned, 9900);
+  EXPECT_GT(as_asked, 8500);
+}
+
+TEST(PositionLimits, HoldAlongALine) {
+  StateToStateOptions options;
+  options.synchronization = Synchronization::kLine;
+  StateToState motion;
+  int turned = 0;
+  for (int seed = 0; seed < 3000; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937_64 random(static_cast<std::uint64_t>(seed));
+    const AxisRequest r = random_walled_request(random);
+    std::vector<AxisState> start, end;
+    std::vector<AxisLimits> limits;
+    for (const double factor : {1.0, -0.5, 0.0}) {
+      const auto scaled = [&](const AxisState& s) {
+        return AxisState{7.0 + factor * s.q, factor * s.qd, factor * s.qdd, 0.0};
+      };
+      start.push_back(scaled(r.start));
+      end.push_back(scaled(r.end));
+      limits.push_back(AxisLimits::symmetric(1e3, 1e3, 1e3));
+    }
+    limits[0] = r.limits;
+    limits[0].position_min = -kNone;
+    limits[0].position_max += 7.0;
+    limits[1].position_max =
+        7.0 - 0.5 * r.limits.position_min;  // the lower wall, by the other axis
+    const MoveStatus status = motion.plan(start, end, limits, options);
+    ASSERT_EQ(status, MoveStatus::kSolved) << to_string(status);
+    AxisMove alone;
+    ASSERT_EQ(quickest_move(r.start, r.end, r.limits, alone), MoveStatus::kSolved);
+    EXPECT_NEAR(motion.duration(), alone.total, 1e-5 * alone.total);
+    for (size_t i = 0; i < 3; ++i) {
+      const AxisMove& move = motion.axis(static_cast<int>(i));
+      const Extent extent = extent_of(move);
+      EXPECT_LE(extent.high, limits[i].position_max + 1e-8);
+      EXPECT_GE(extent.low, limits[i].position_min - 1e-8);
+    }
+    if (extent_of(motion.axis(0)).high > std::max(start[0].q, end[0].q) + 1e-6) ++turned;
+    if (HasFailure()) return;
+  }
+  EXPECT_GT(turned, 500);
+  // A joint outside its limits that the line does not move never comes in.
+  std::vector<AxisState> start(2), end(2);
+  end[0].q = 1.0;
+  const std::vector<AxisLimits> limits{between(-2.0, 2.0), between(1.0, 2.0)};
+  EXPECT_EQ(motion.plan(start, end, limits, options), MoveStatus::kEndPosition);
+  EXPECT_EQ(motion.culprit(), 1);
+}
+
+/// Planned anew in every cycle from the law's own state, on the way to the wall itself and with a
+/// speed limit that changes: the wall is never refused for rounding, and is arrived at exactly.
+TEST(PositionLimits, AreArrivedAtWhenPlannedAnewInEveryCycle) {
+  constexpr double kCycle = 0.002;
+  for (int seed = 0; seed < 60; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937_64 random(static_cast<std::uint64_t>(seed));
+    AxisRequest r = testing::random_request(random, 0.5);
+    r.start = {uniform(random, -1.0, 1.0), 0.0, 0.0, 0.0};
+    r.limits.position_min = r.start.q - 1.0;
+    r.limits.position_max = r.start.q + log_uniform(random, 0.1, 2.0);
+    r.end = {r.limits.position_max, 0.0, 0.0, 0.0};
+    const AxisLimits widest = r.limits;
+    AxisMove move;
+    for (int cycle = 0; cycle < 60000; ++cycle) {
+      if (random() % 50 == 0) {
+        r.limits.velocity_max = widest.velocity_max * log_uniform(random, 0.2, 1.0);
+      }
+      ASSERT_EQ(quickest_move(r.start, r.end, r.limits, move), MoveStatus::kSolved)
+          << "cycle " << cycle;
+      r.start = move.at(kCycle);
+      ASSERT_LE(r.start.q, r.limits.position_max + 1e-12);
+      if (move.phases == 0) break;
+    }
+    EXPECT_EQ(r.start.q, r.end.q);
+    EXPECT_EQ(r.start.qd, 0.0);
+  }
+}
+
+}  // namespace
+}  // namespace viapoint
