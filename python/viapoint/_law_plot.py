@@ -20,7 +20,7 @@ from .errors import BadArgumentError
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from ._law import Law
+    from ._law import Law, Part
 
 QUANTITIES = ("position", "velocity", "acceleration", "jerk")
 COLOURS = (LINE, "#2e8b57", "#d07a00", "#7d4fa3", "#1aa0a0", "#b05a7a")
@@ -64,12 +64,13 @@ def draw_law(law: Law, title: str = "", marks: Marks | None = None) -> Figure:
     if title:
         figure.suptitle(title, fontweight="bold")
     panels = figure.subplots(4, 1, sharex=True)
+    impulses = False
     for axis, name in enumerate(names):
         colour = COLOURS[axis % len(COLOURS)]
         for derivative, panel in enumerate(panels):
             _draw_curve(panel, law, axis, derivative, colour, name)
             _draw_extremes(panel, law, axis, derivative, colour)
-        _draw_impulses(panels[3], law, axis, colour)
+        impulses |= _draw_impulses(panels[3], law, axis, colour)
     for derivative, panel in enumerate(panels):
         _draw_limit(panel, QUANTITIES[derivative], shown.limits)
         per = ("", "/s", "/s²", "/s³")[derivative]
@@ -79,10 +80,12 @@ def draw_law(law: Law, title: str = "", marks: Marks | None = None) -> Figure:
         for border in sorted({part.start for a in range(len(names)) for part in law.parts(a)[1:]}):
             panel.axvline(border, color=SWEEP, lw=0.8, ls=":", zorder=1)
     _draw_points(panels[0], law, shown)
+    if not any(np.any(bound) for bound in (law.extremes(3).low, law.extremes(3).high)):
+        panels[3].set_yticks([0.0])  # the scale of nothing means nothing
     panels[0].set_xlim(law.start, law.end)
     panels[3].set_xlabel("time [s]")
     figure.align_ylabels()
-    _draw_legend(figure, law, names, shown)
+    _draw_legend(figure, law, names, shown, impulses=impulses)
     return figure
 
 
@@ -122,10 +125,12 @@ def _draw_extremes(panel: Axes, law: Law, axis: int, derivative: int, colour: st
     ):
         if abs(value) <= 1e-9 * size or size == 0.0:
             continue  # rest is no extreme worth a mark
+        if not above and value == found.high[place]:
+            continue  # constant: one mark will do
         panel.plot(time, value, "o", color=colour, ms=4.5, zorder=4, clip_on=False)
         share = (float(time) - law.start) / law.duration
         panel.annotate(
-            f"{float(value):.4g}",
+            f"{float(value):.4g}".replace("-", "\N{MINUS SIGN}"),
             (float(time), float(value)),
             xytext=(4 if share < 0.9 else -4, 3 if above else -3),
             textcoords="offset points",
@@ -137,24 +142,31 @@ def _draw_extremes(panel: Axes, law: Law, axis: int, derivative: int, colour: st
         )
 
 
-def _draw_impulses(panel: Axes, law: Law, axis: int, colour: str) -> None:
-    """Where acceleration steps, jerk is an impulse: an arrow of its sign."""
+def _draw_impulses(panel: Axes, law: Law, axis: int, colour: str) -> bool:
+    """Where acceleration steps, jerk is an impulse: an arrow of its sign. True if there is one."""
+    drawn = False
     parts = law.parts(axis)
     found = law.extremes(2)
     place = axis if law.shape else ()
     size = max(abs(float(found.low[place])), abs(float(found.high[place])))
     for before, after in pairwise(parts):
-        curve = np.polynomial.Polynomial(before.coefficients).deriv(2)
-        step = 2.0 * after.coefficients[2] - curve(before.end - before.start)
+        step = 2.0 * after.coefficients[2] - _acceleration_at_end(before)
         if abs(step) <= JUMP * size:
             continue
         panel.annotate(
             "",
-            xy=(after.start, 0.88 if step > 0 else 0.12),
-            xytext=(after.start, 0.5),
+            xy=(after.start, 0.92 if step > 0 else 0.08),
+            xytext=(after.start, 0.0),
             xycoords=("data", "axes fraction"),
+            textcoords="data",
             arrowprops={"arrowstyle": "-|>", "color": colour, "lw": 1.4},
         )
+        drawn = True
+    return drawn
+
+
+def _acceleration_at_end(part: Part) -> float:
+    return float(np.polynomial.Polynomial(part.coefficients).deriv(2)(part.end - part.start))
 
 
 def _draw_limit(panel: Axes, quantity: str, limits: Mapping[str, float]) -> None:
@@ -194,7 +206,9 @@ def _draw_points(panel: Axes, law: Law, marks: Marks) -> None:
         )
 
 
-def _draw_legend(figure: Figure, law: Law, names: list[str], marks: Marks) -> None:
+def _draw_legend(
+    figure: Figure, law: Law, names: list[str], marks: Marks, *, impulses: bool
+) -> None:
     entries = [
         (Line2D([], [], color=COLOURS[i % len(COLOURS)], lw=1.6), name)
         for i, name in enumerate(names)
@@ -207,11 +221,13 @@ def _draw_legend(figure: Figure, law: Law, names: list[str], marks: Marks) -> No
         entries.append((Line2D([], [], color=LIMIT, ls="--", lw=1.0), "limit"))
     if any(len(law.parts(axis)) > 1 for axis in range(len(names))):
         entries.append((Line2D([], [], color=SWEEP, ls=":", lw=0.8), "parts meet"))
+    if impulses:
+        entries.append((Line2D([], [], color="black", marker="^", ls="", ms=5), "impulse of jerk"))
     figure.legend(
         [handle for handle, _ in entries],
         [name for _, name in entries],
         loc="outside lower center",
-        ncols=min(len(entries), 6),
+        ncols=len(entries) if len(entries) <= 6 else (len(entries) + 1) // 2,
         frameon=False,
         fontsize=9,
     )
