@@ -3,20 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Literal, TypeAlias
-
-import numpy as np
 
 from . import _core
-from ._arguments import ArrayLike, Vector, choice, integer, number
+from ._arguments import ArrayLike, Vector, integer, number
 from ._axes import boundary_values, for_each_axis
+from ._axis_timing import Timing, moving_axes, timed_axes
 from ._law import AxisLaw, Law, Trapezoid
 from .errors import BadArgumentError
 
 _laws = _core.profile
-
-Timing: TypeAlias = Literal["synchronised", "simultaneous", "sequential"]
-TIMINGS = ("synchronised", "simultaneous", "sequential")
 
 
 def cubic(
@@ -295,40 +290,8 @@ def rest_to_rest(
         limits = x["v_max"][i], x["a_max"][i], x["j_max"][i]
         return _laws.rest_to_rest(x["q0"][i], x["q1"][i], *limits)
 
-    moves = _moves(shape, x, make)
-    return Law(_timed(x, moves, timing), shape)
-
-
-def together(laws: Sequence[Law], timing: Timing = "synchronised") -> Law:
-    """Make one motion of several axes, each with a law of its own.
-
-    Parameters
-    ----------
-    laws : sequence of Law
-        One an axis, all beginning at one time.
-    timing : {"synchronised", "simultaneous", "sequential"}
-        ``"synchronised"``: all start together and arrive together, the quicker ones stretched in
-        time; of laws of one shape this is a straight line in joint space. ``"simultaneous"``: all
-        start together, each at its own pace, and wait at their ends. ``"sequential"``: one after
-        the other.
-
-    Returns
-    -------
-    Law
-        Of the shape (n,), one axis a law.
-
-    Raises
-    ------
-    BadArgumentError
-        No law, a law of several axes, laws that begin at different times, or, unless synchronised,
-        one that would have to wait where it has speed.
-    """
-    alone = list(laws)
-    for k, law in enumerate(alone):
-        if not isinstance(law, Law) or law.shape not in ((), (1,)):
-            raise BadArgumentError(f"laws[{k}] must be the law of one axis.")
-    axes = [law._axes[0] for law in alone]
-    return Law(_laws.timed_together(axes, _timing(timing)), (len(axes),))
+    moves = moving_axes(shape, x, make)
+    return Law(timed_axes(x, moves, timing), shape)
 
 
 def _span(t0: float, duration: float) -> tuple[float, float]:
@@ -336,41 +299,18 @@ def _span(t0: float, duration: float) -> tuple[float, float]:
     return begin, begin + number(duration, "duration", "s", above=0.0)
 
 
-def _timing(timing: Timing) -> _core.profile.AxisTiming:
-    return getattr(_laws.AxisTiming, choice(timing, "timing", TIMINGS))  # type: ignore[no-any-return]
-
-
 def _require_limits(shape: tuple[int, ...], x: dict[str, Vector], *names: str) -> None:
     """Refuse limits that are not positive, of axes that rest as well."""
-    for name in names:
-        for_each_axis(shape, lambda i, name=name: number(float(x[name][i]), name, above=0.0))
+
+    def check(axis: int) -> None:
+        for name in names:
+            number(float(x[name][axis]), name, above=0.0)
+
+    for_each_axis(shape, check)
 
 
 def _numbers_of(axis: _core.profile.Trapezoid) -> tuple[float, float, float]:
     return axis.velocity, axis.acceleration, axis.blend_time
-
-
-def _moves(
-    shape: tuple[int, ...], x: dict[str, Vector], make: Callable[[int], AxisLaw]
-) -> list[AxisLaw | None]:
-    """Laws of the axes that have a distance to go, None for the others."""
-    made = for_each_axis(shape, lambda i: make(i) if x["q0"][i] != x["q1"][i] else None)
-    if all(law is None for law in made):
-        raise BadArgumentError(
-            f"from {np.array2string(x['q0'], threshold=4)} to itself there is nothing to move."
-        )
-    return made
-
-
-def _timed(x: dict[str, Vector], moves: list[AxisLaw | None], timing: Timing) -> list[AxisLaw]:
-    """Time the moves together, and let the other axes rest meanwhile."""
-    moving = iter(_laws.timed_together([law for law in moves if law is not None], _timing(timing)))
-    timed = [None if law is None else next(moving) for law in moves]
-    span = next(law for law in timed if law is not None)
-    return [
-        _laws.resting(x["q0"][i], span.start, span.end) if law is None else law
-        for i, law in enumerate(timed)
-    ]
 
 
 def _trapezoids(
@@ -386,8 +326,8 @@ def _trapezoids(
         numbers[i] = _numbers_of(axis)
         return axis.law
 
-    moves = _moves(shape, x, keep)
-    axes = _timed(x, moves, timing)
+    moves = moving_axes(shape, x, keep)
+    axes = timed_axes(x, moves, timing)
     if timing == "synchronised":  # stretched in time
         for i, law in enumerate(moves):
             if law is not None:

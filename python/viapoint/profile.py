@@ -27,6 +27,7 @@ Bézier, B-spline, B-spline through points               `bezier`, `b_spline`, `
 
 from __future__ import annotations
 
+from ._axis_timing import together
 from ._blends import blended_lines, parabolic_blend, quartic_transitions
 from ._law import BlendedLines, Extremes, Law, Part, State, Trapezoid
 from ._point_to_point import (
@@ -36,7 +37,6 @@ from ._point_to_point import (
     polynomial,
     quintic,
     rest_to_rest,
-    together,
     trapezoid,
 )
 from ._splines import b_spline, b_spline_through, bezier

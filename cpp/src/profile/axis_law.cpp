@@ -16,17 +16,35 @@ constexpr double kTimeRounding = 1e-12;
 /// Beyond this a sum of terms may overflow.
 constexpr double kLargest = 1e307;
 
-/// No term of the part or of its derivatives may leave what doubles hold: then none is NaN.
-void require_representable(const Polynomial& part) {
+/// Share of their terms by which positions may differ where parts meet: far more than rounding, far
+/// less than what a clock too coarse for the parts, or a coefficient that has underflown, leaves.
+constexpr double kMeeting = 1e-6;
+
+/// The terms of the part and of its derivatives at its end, by size.
+AxisState sizes_of(const Polynomial& part) {
   Polynomial sizes{0.0, part.t1 - part.t0, part.c};
   for (double& c : sizes.c) c = std::abs(c);
-  const AxisState worst = sizes.at(sizes.t1);
+  return sizes.at(sizes.t1);
+}
+
+/// No term of the part or of its derivatives may leave what doubles hold: then none is NaN.
+void require_representable(const Polynomial& part) {
+  const AxisState worst = sizes_of(part);
   for (const double size : {worst.q, worst.qd, worst.qdd, worst.qddd}) {
     if (size <= kLargest) continue;
     refuse("the law would reach " + written(size) + " between " + written(part.t0) + " and " +
                written(part.t1) + " s; position and derivatives must stay below 1e307",
            size, kLargest, {"give values nearer to one another", "give more time"});
   }
+}
+
+void require_meeting(const Polynomial& before, const Polynomial& after) {
+  const double left = before.at(before.t1).q, right = after.at(after.t0).q;
+  const double terms = sizes_of(before).q + sizes_of(after).q;
+  if (std::abs(left - right) <= kMeeting * terms) return;
+  refuse("at " + written(after.t0) + " s the law would jump from " + written(left) + " to " +
+             written(right) + "; position must be continuous, within what doubles can count",
+         left, right, {"begin nearer to time 0", "give shorter or longer times"});
 }
 
 std::vector<Polynomial> parts_of(const JerkProfile& profile) {
@@ -66,6 +84,7 @@ AxisLaw::AxisLaw(std::vector<Polynomial> parts) : parts_(std::move(parts)) {
              parts_[i].t0, parts_[i - 1].t1);
     }
     require_representable(parts_[i]);
+    if (i > 0) require_meeting(parts_[i - 1], parts_[i]);
   }
 }
 

@@ -10,6 +10,9 @@ namespace {
 /// Velocities up to this share of the law's largest are rounding of rest.
 constexpr double kRestRounding = 1e-9;
 
+/// Share of a law by which its parts may come out longer or shorter at another time.
+constexpr double kLengthRounding = 1e-6;
+
 void require_rest(const AxisLaw& law, double t, const char* where) {
   const Extremes speed = law.extremes(1);
   const double largest = std::max(std::abs(speed.low), std::abs(speed.high));
@@ -35,8 +38,13 @@ AxisLaw delayed(const AxisLaw& law, double seconds) {
   require_finite(seconds, "seconds");
   std::vector<Polynomial> parts = law.parts();
   for (Polynomial& part : parts) {
+    const double length = part.t1 - part.t0;
     part.t0 += seconds;
     part.t1 += seconds;
+    if (std::abs(part.t1 - part.t0 - length) <= kLengthRounding * law.duration()) continue;
+    refuse("at " + written(part.t0) + " s a clock of doubles cannot tell " + written(length) +
+               " s apart",
+           part.t0, length, {"begin nearer to time 0"});
   }
   return AxisLaw(std::move(parts));
 }

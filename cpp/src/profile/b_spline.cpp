@@ -134,6 +134,7 @@ AxisLaw bezier(std::span<const double> points, double t0, double t1) {
     for (size_t i = 0; i + m < degree; ++i) difference[i] = difference[i + 1] - difference[i];
     factor *= static_cast<double>(degree - m) / static_cast<double>(m + 1) / (t1 - t0);
   }
+  require_arrival(law, points.back());
   return AxisLaw({law});
 }
 
@@ -147,6 +148,9 @@ AxisLaw b_spline(std::span<const double> points, std::span<const double> knots, 
   for (size_t j = p; j < points.size(); ++j) {
     if (!(knots[j + 1] > knots[j])) continue;
     parts.push_back({knots[j], knots[j + 1], span_coefficients(points, knots, j, p)});
+    Local d{};
+    for (size_t m = 0; m <= p; ++m) d[m] = points[j - p + m];
+    require_arrival(parts.back(), de_boor(d, knots, j, p, knots[j + 1]));
   }
   return AxisLaw(std::move(parts));
 }

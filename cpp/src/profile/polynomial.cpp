@@ -8,6 +8,9 @@
 namespace viapoint {
 namespace {
 
+/// Share of its terms by which a law may miss its end.
+constexpr double kArrivalRounding = 1e-9;
+
 void require_interval(double t0, double t1) {
   require_finite(t0, "t0");
   require_finite(t1, "t1");
@@ -70,6 +73,17 @@ Extremes Polynomial::extremes(int derivative) const {
   return found;
 }
 
+void require_arrival(const Polynomial& law, double end) {
+  Polynomial sizes{0.0, law.t1 - law.t0, law.c};
+  for (double& c : sizes.c) c = std::abs(c);
+  const double reached = law.at(law.t1).q;
+  if (std::abs(reached - end) <= kArrivalRounding * sizes.at(sizes.t1).q) return;
+  refuse("from " + written(law.t0) + " to " + written(law.t1) + " s the law would end at " +
+             written(reached) + " and not at " + written(end) +
+             ": its coefficients leave what doubles hold",
+         reached, end, {"give shorter or longer times", "give values nearer to one another"});
+}
+
 Polynomial cubic(const AxisState& from, const AxisState& to, double t0, double t1) {
   require_finite(std::array{from.q, from.qd, to.q, to.qd}, "boundary value");
   require_interval(t0, t1);
@@ -80,6 +94,7 @@ Polynomial cubic(const AxisState& from, const AxisState& to, double t0, double t
   law.c[1] = from.qd;
   law.c[2] = (3.0 * gap / time - 2.0 * from.qd - to.qd) / time;
   law.c[3] = (from.qd + to.qd - 2.0 * gap / time) / (time * time);
+  require_arrival(law, to.q);
   return law;
 }
 
@@ -99,6 +114,7 @@ Polynomial quintic(const AxisState& from, const AxisState& to, double t0, double
   law.c[3] = (10.0 * gap - 4.0 * slope + 0.5 * bend) / cube;
   law.c[4] = (-15.0 * gap + 7.0 * slope - bend) / (cube * time);
   law.c[5] = (6.0 * gap - 3.0 * slope + 0.5 * bend) / (cube * time * time);
+  require_arrival(law, to.q);
   return law;
 }
 

@@ -1,6 +1,8 @@
 #include "viapoint/profile/via_cubics.hpp"
 
+#include <cmath>
 #include <string>
+#include <utility>
 
 #include "profile/argument_check.hpp"
 
@@ -19,6 +21,16 @@ std::vector<double> slopes_of(std::span<const double> points, std::span<const do
     slopes.push_back((points[i + 1] - points[i]) / durations[i]);
   }
   return slopes;
+}
+
+/// @throws MotionError(kBadArgument) where slopes or durations were too far apart for doubles
+std::vector<double> representable(std::vector<double> velocities) {
+  for (const double v : velocities) {
+    if (std::isfinite(v)) continue;
+    refuse("a via velocity would be " + written(v) + "; points or durations are too far apart", v,
+           0.0, {"give points or durations nearer to one another"});
+  }
+  return velocities;
 }
 
 /// A condition on the velocity at an end: v_end + share · v_next = value.
@@ -82,7 +94,7 @@ std::vector<double> slope_velocities(std::span<const double> points,
     velocities.push_back(goes_on ? 0.5 * (slopes[i - 1] + slopes[i]) : 0.0);
   }
   velocities.push_back(last);
-  return velocities;
+  return representable(std::move(velocities));
 }
 
 std::vector<double> spline_velocities(std::span<const double> points,
@@ -91,7 +103,7 @@ std::vector<double> spline_velocities(std::span<const double> points,
   require_path(points, durations);
   require_finite(first, "first");
   require_finite(last, "last");
-  return solved(slopes_of(points, durations), durations, {0.0, first}, {0.0, last});
+  return representable(solved(slopes_of(points, durations), durations, {0.0, first}, {0.0, last}));
 }
 
 std::vector<double> natural_spline_velocities(std::span<const double> points,
@@ -99,7 +111,8 @@ std::vector<double> natural_spline_velocities(std::span<const double> points,
   require_path(points, durations);
   const std::vector<double> slopes = slopes_of(points, durations);
   // No q̈ at the end of a segment: its velocity and half the one across make 3/2 of its slope.
-  return solved(slopes, durations, {0.5, 1.5 * slopes.front()}, {0.5, 1.5 * slopes.back()});
+  return representable(
+      solved(slopes, durations, {0.5, 1.5 * slopes.front()}, {0.5, 1.5 * slopes.back()}));
 }
 
 std::vector<double> periodic_spline_velocities(std::span<const double> points,
@@ -119,7 +132,7 @@ std::vector<double> periodic_spline_velocities(std::span<const double> points,
   const double x = -gap(at_rest, slopes.front(), slopes.back()) / gap(unit, 0.0, 0.0);
   std::vector<double> velocities;
   for (size_t i = 0; i <= last; ++i) velocities.push_back(at_rest[i] + x * unit[i]);
-  return velocities;
+  return representable(std::move(velocities));
 }
 
 }  // namespace viapoint

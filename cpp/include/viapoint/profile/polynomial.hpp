@@ -32,6 +32,10 @@ struct Polynomial {
   [[nodiscard]] Extremes extremes(int derivative) const;
 };
 
+/// Holds a law against the position it was made to end at: coefficients of very long or very short
+/// times leave what doubles hold. @throws MotionError(kBadArgument) unless it ends there
+void require_arrival(const Polynomial& law, double end);
+
 /// The cubic with the given q and q̇ at both ends (Craig 2005, eq. 7.11). `t0` may be any time.
 /// @throws MotionError(kBadArgument) unless all is finite and t0 < t1
 [[nodiscard]] Polynomial cubic(const AxisState& from, const AxisState& to, double t0, double t1);
