@@ -60,5 +60,6 @@ void require_range(const StateRequest& request);
 /// What the type stubs say.
 template <>
 struct pybind11::detail::handle_type_name<viapoint::python::Given> {
+  // pybind11's name for it. NOLINTNEXTLINE(readability-identifier-naming)
   static constexpr auto name = const_name("numpy.typing.ArrayLike | None");
 };

@@ -33,7 +33,7 @@ bool is_sound(const AxisMove& move, const AxisState& start, const AxisLimits& l)
   for (int i = 0; i < move.phases; ++i) {
     const auto& [t, from] = move.phase[static_cast<size_t>(i)];
     const AxisState& next =
-        i + 1 < move.phases ? move.phase[static_cast<size_t>(i + 1)].from : move.end;
+        i + 1 < move.phases ? move.phase[static_cast<size_t>(i) + 1].from : move.end;
     const double push_change = t * from.qddd;
     const double speed_change = t * (from.qdd + 0.5 * push_change);
     const double way = t * (from.qd + t * (0.5 * from.qdd + push_change / 6.0));

@@ -3,11 +3,10 @@
 //   worst COUNT            processor time of each of COUNT solutions
 //   plan JOINTS COUNT      solves and nothing else, for callgrind
 // Prints one JSON object; failures of `verify` go before it, one line each.
-#include <time.h>
-
 #include <array>
 #include <charconv>
 #include <cstdint>
+#include <ctime>
 #include <iostream>
 #include <string_view>
 #include <vector>
@@ -54,7 +53,7 @@ bool verify(std::uint64_t first, std::uint64_t count) {
       why = faults.beyond(kMeets, kHolds);
     }
     if (why.empty()) continue;
-    if (++failures <= kPrinted) std::cout << "failed: seed " << seed << ": " << why << std::endl;
+    if (++failures <= kPrinted) std::cout << "failed: seed " << seed << ": " << why << "\n";
   }
   JsonLine("profiles", "verified")
       .add("problems", count)
