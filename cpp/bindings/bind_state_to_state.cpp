@@ -227,10 +227,10 @@ StateMotion plan_velocities(const StateRequest& request) {
 StateMotion state_to_state(const Given& q0, const Given& q1, const Given& v0, const Given& a0,
                            const Given& v1, const Given& a1, const Given& v_max, const Given& a_max,
                            const Given& j_max, const Given& v_min, const Given& a_min,
-                           const Given& j_min, const Given& sync, const Given& least_duration,
-                           const Given& cycle) {
+                           const Given& j_min, const Given& p_min, const Given& p_max,
+                           const Given& sync, const Given& least_duration, const Given& cycle) {
   // In the order of StateRequest's fields; a minimum not given is minus the maximum.
-  const std::array<JointValues, 12> given{
+  const std::array<JointValues, 14> given{
       joint_values(q0, "q0"),
       q1.is_none() ? JointValues{} : joint_values(q1, "q1"),
       joint_values(v0, "v0"),
@@ -243,6 +243,8 @@ StateMotion state_to_state(const Given& q0, const Given& q1, const Given& v0, co
       v_min.is_none() ? JointValues{} : joint_values(v_min, "v_min"),
       a_min.is_none() ? JointValues{} : joint_values(a_min, "a_min"),
       j_min.is_none() ? JointValues{} : joint_values(j_min, "j_min"),
+      p_min.is_none() ? JointValues{} : joint_values(p_min, "p_min"),
+      p_max.is_none() ? JointValues{} : joint_values(p_max, "p_max"),
   };
   StateRequest request;
   request.to_velocity = q1.is_none();
@@ -260,6 +262,8 @@ StateMotion state_to_state(const Given& q0, const Given& q1, const Given& v0, co
     l.velocity_min = minimum(v_min, given[9], given[6], i);
     l.acceleration_min = minimum(a_min, given[10], given[7], i);
     l.jerk_min = minimum(j_min, given[11], given[8], i);
+    if (!p_min.is_none()) l.position_min = given[12][i];
+    if (!p_max.is_none()) l.position_max = given[13][i];
   }
 
   require_range(request);
@@ -270,12 +274,12 @@ StateMotion state_to_state(const Given& q0, const Given& q1, const Given& v0, co
   options.cycle = seconds(cycle, "cycle");
   if (request.to_velocity) {
     if (options.synchronization != Synchronization::kNone || !least_duration.is_none() ||
-        !cycle.is_none()) {
-      throw MotionError(
-          ErrorCode::kBadArgument,
-          "a motion to a velocity (q1 is None) takes each joint as long as it needs; sync must be "
-          "\"none\", and least_duration and cycle None.",
-          {"Leave sync, least_duration and cycle out.", "Give the position q1."});
+        !cycle.is_none() || !p_min.is_none() || !p_max.is_none()) {
+      throw MotionError(ErrorCode::kBadArgument,
+                        "a motion to a velocity (q1 is None) takes each joint as long and as far "
+                        "as it needs; sync "
+                        "must be \"none\", and least_duration, cycle, p_min and p_max None.",
+                        {"Leave them out.", "Give the position q1."});
     }
   }
   StateMotion motion =
@@ -307,7 +311,8 @@ void bind_state_to_state(py::module_& profile) {
   profile.def("state_to_state", &state_to_state, py::arg("q0"), py::arg("q1"), py::arg("v0"),
               py::arg("a0"), py::arg("v1"), py::arg("a1"), py::arg("v_max"), py::arg("a_max"),
               py::arg("j_max"), py::arg("v_min"), py::arg("a_min"), py::arg("j_min"),
-              py::arg("sync"), py::arg("least_duration"), py::arg("cycle"),
+              py::arg("p_min"), py::arg("p_max"), py::arg("sync"), py::arg("least_duration"),
+              py::arg("cycle"),
               "The quickest motion from state to state, or with q1 None to a velocity.");
 }
 

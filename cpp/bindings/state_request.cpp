@@ -106,6 +106,12 @@ void require_limits(const StateRequest& r) {
     below("v_min", i, l.velocity_min);
     below("a_min", i, l.acceleration_min);
     below("j_min", i, l.jerk_min);
+    if (!(l.position_min <= l.position_max)) {
+      refuse_joint(r, ErrorCode::kBadLimits, "p_min", i, l.position_min,
+                   "it must not be above p_max, which is " + written(l.position_max) + ".",
+                   {"Give the smallest position first, or leave out what is not limited."},
+                   l.position_max);
+    }
   }
 }
 
@@ -136,6 +142,30 @@ void require_end_within(const StateRequest& r, size_t i) {
                  {"End with less acceleration, at another velocity, or raise j_max."},
                  before > 0.0 ? l.velocity_max : l.velocity_min);
   }
+}
+
+/// Position limits are in the way. @throws MotionError(kJointLimit) always
+[[noreturn]] void refuse_position(const StateRequest& r, MoveStatus status, size_t i) {
+  const AxisState &from = r.start[i], &to = r.end[i];
+  const AxisLimits& l = r.limits[i];
+  const std::string range =
+      "p_min to p_max is " + written(l.position_min) + " to " + written(l.position_max) + ".";
+  const double nearest = to.q > l.position_max ? l.position_max : l.position_min;
+  if (status == MoveStatus::kEndPosition) {
+    refuse_joint(r, ErrorCode::kJointLimit, "q1", i, to.q, range,
+                 {"End within the limits, or widen them."}, nearest);
+  }
+  const std::string way = std::string(to_string(status)) + "; ";
+  if (status == MoveStatus::kStartTooFast) {
+    refuse_joint(r, ErrorCode::kJointLimit, "v0", i, from.qd,
+                 way + "q0 is " + written(from.q) + ", and " + range,
+                 {"Start more slowly or farther away, or raise the limits of a and j."},
+                 from.qd > 0.0 ? l.position_max : l.position_min);
+  }
+  refuse_joint(r, ErrorCode::kJointLimit, "v1", i, to.qd,
+               way + "q1 is " + written(to.q) + ", and " + range,
+               {"End more slowly, or widen the limits of the position."},
+               to.qd > 0.0 ? l.position_min : l.position_max);
 }
 
 [[noreturn]] void refuse_line(const StateRequest& r, size_t joint) {
@@ -191,6 +221,9 @@ void require_range(const StateRequest& request) {
 void refuse(const StateRequest& request, MoveStatus status, int culprit) {
   if (status == MoveStatus::kNotParallel) {
     refuse_line(request, static_cast<size_t>(std::max(culprit, 0)));
+  }
+  if (status >= MoveStatus::kEndPosition && status <= MoveStatus::kNoRoom) {
+    refuse_position(request, status, static_cast<size_t>(std::max(culprit, 0)));
   }
   if (culprit >= 0) require_end_within(request, static_cast<size_t>(culprit));
   for (size_t i = 0; i < request.joints; ++i) require_end_within(request, i);

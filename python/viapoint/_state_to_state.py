@@ -156,13 +156,15 @@ def state_to_state(
     v_min: ArrayLike | None = None,
     a_min: ArrayLike | None = None,
     j_min: ArrayLike | None = None,
+    p_min: ArrayLike | None = None,
+    p_max: ArrayLike | None = None,
     sync: Literal["time", "line", "none"] | None = None,
     least_duration: float | None = None,
     cycle: float | None = None,
 ) -> StateMotion:
     """Move from any state to any other as quickly as velocity, acceleration and jerk may be.
 
-    Every argument of the first three rows below is one value for all joints, or one a joint.
+    States and limits are one value for all joints, or one a joint.
 
     Parameters
     ----------
@@ -175,6 +177,9 @@ def state_to_state(
         Largest velocity, acceleration and jerk [rad or m per s, s², s³], above 0.
     v_min, a_min, j_min : float or array_like, (n,), optional
         Smallest ones, with their sign: below 0. Minus the largest where not given.
+    p_min, p_max : float or array_like, (n,), optional
+        Smallest and largest position during the motion [rad or m]; infinite where there is none.
+        A start beyond them comes in.
     sync : {"time", "line", "none"}, optional
         ``"time"``: all joints arrive together, in the shortest time that all have a motion of.
         ``"line"``: all move on the straight line from q0 to q1; the states must lie on it, or the
@@ -196,6 +201,8 @@ def state_to_state(
         ``sync="line"``, numbers so many decades apart that doubles cannot hold the motion.
     BadLimitsError
         A maximum that is not above 0, a minimum that is not below 0.
+    JointLimitError
+        The end is beyond a position limit, or a state too fast to stop before one.
     VelocityLimitError, AccelerationLimitError
         An end state outside its limits, or one that can only be arrived at from outside.
 
@@ -208,7 +215,7 @@ def state_to_state(
     """
     return StateMotion(
         _core.profile.state_to_state(
-            q0, q1, v0, a0, v1, a1, v_max, a_max, j_max, v_min, a_min, j_min,
+            q0, q1, v0, a0, v1, a1, v_max, a_max, j_max, v_min, a_min, j_min, p_min, p_max,
             sync, least_duration, cycle,
         )
     )  # fmt: skip

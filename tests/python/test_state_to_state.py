@@ -152,9 +152,30 @@ def test_a_velocity_target_leaves_the_position_open():
     # Rest to speed under jerk and acceleration limits takes v/a + a/j.
     alone = vp.profile.state_to_state(0.0, None, v1=3.0, v_max=3.0, a_max=2.0, j_max=10.0)
     assert alone.duration == pytest.approx(3.0 / 2.0 + 2.0 / 10.0, rel=1e-12)
-    for options in ({"sync": "time"}, {"sync": "line"}, {"cycle": 0.002}, {"least_duration": 1.0}):
+    for options in ({"sync": "time"}, {"sync": "line"}, {"cycle": 0.002}, {"p_max": 9.0}):
         with pytest.raises(errors.BadArgumentError, match="q1 is None"):
             state_to_state(START, None, **options)
+
+
+def test_position_limits_hold_on_the_way():
+    # 0.7 m/s within 0.08 m takes a run-up of 0.0767 m.
+    run_up = {"v1": 0.7, "v_max": 1.0, "a_max": 2.0, "j_max": 20.0}
+    motion = vp.profile.state_to_state(0.0, 0.08, p_min=-0.08, p_max=0.1, **run_up)
+    assert -0.08 <= motion.extremes(0).low < -0.07
+    with pytest.raises(errors.JointLimitError, match=r"v1 is 0\.7.*-0\.07 to 0\.1"):
+        vp.profile.state_to_state(0.0, 0.08, p_min=-0.07, p_max=0.1, **run_up)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"p_max": [0.9, 9.0, 9.0]}, r"q1\[0\] is 1; p_min to p_max is -inf to 0\.9"),
+        ({"v0": [1.0, 0.0, 0.0], "p_max": [0.11, 9, 9], "q1": [0.1, 0, 0]}, r"v0\[0\] is 1.*0\.11"),
+    ],
+)
+def test_position_limits_that_cannot_be_held_are_named(options, words):
+    with pytest.raises(errors.JointLimitError, match=words):
+        state_to_state(START, **({"q1": END} | options))
 
 
 def test_extremes_are_those_of_a_dense_sampling_and_not_less():
@@ -220,6 +241,8 @@ def test_nothing_to_do_takes_no_time():
         ({"q0": 1e200}, errors.BadArgumentError, r"q0\[0\] is 1e\+200.*1e\+30"),
         ({"v_min": 0.5}, errors.BadLimitsError, r"v_min\[0\] is 0\.5.*below 0"),
         ({"v_max": -1.0, "v_min": 1.0}, errors.BadLimitsError, r"v_max\[0\] is -1"),
+        ({"p_min": 3.0, "p_max": 2.0}, errors.BadLimitsError, r"p_min\[0\] is 3.*above p_max"),
+        ({"p_min": np.nan}, errors.BadLimitsError, r"p_min\[0\] is nan"),
         ({"v1": [0.0, 2.5, 0.0]}, errors.VelocityLimitError, r"v1\[1\] is 2\.5.*-2 to 2"),
         ({"a1": [0.0, 0.0, -7.0]}, errors.AccelerationLimitError, r"a1\[2\] is -7.*-6 to 6"),
         ({"v1": -1.0, "a1": [1, 0, 0]}, errors.VelocityLimitError, r"a1\[0\] is 1.*before"),

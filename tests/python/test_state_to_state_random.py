@@ -72,6 +72,11 @@ def must_be_right(motion, arguments):
             assert np.ravel(found[k + 1].low)[joint] >= low[k] - slack
             assert np.ravel(found[k + 1].high)[joint] <= high[k] + slack
 
+        for sign, name, of in ((1.0, "p_max", found[0].high), (-1.0, "p_min", found[0].low)):
+            if sign * start[0] <= sign * arguments.get(name, sign * math.inf):
+                beyond = sign * (of.ravel()[joint] - arguments.get(name, sign * math.inf))
+                assert beyond <= 1e-8 * (abs(found[0].high - found[0].low).max() + 1.0)
+
         here, rounding = start[0], 0.0
         size = abs(end[0] - start[0]) if arguments.get("q1") is not None else 0.0
         size = max(size, *(abs(value.ravel()[joint] - start[0]) for value in found[0][::2]))
@@ -128,7 +133,7 @@ def test_anything_gives_a_right_answer_or_a_named_error(arguments):
             **{name: st.lists(sane, min_size=2, max_size=2) for name in states},
             **{name: st.lists(limit, min_size=2, max_size=2) for name in limits},
         },
-        optional=extras,
+        optional={**extras, "p_min": st.floats(-30.0, -10.0), "p_max": st.floats(10.0, 30.0)},
     )
 )
 def test_numbers_as_robots_have_them_give_a_right_answer(arguments):
