@@ -464,6 +464,8 @@ def state_to_state(
     v_min: numpy.typing.ArrayLike | None,
     a_min: numpy.typing.ArrayLike | None,
     j_min: numpy.typing.ArrayLike | None,
+    p_min: numpy.typing.ArrayLike | None,
+    p_max: numpy.typing.ArrayLike | None,
     sync: numpy.typing.ArrayLike | None,
     least_duration: numpy.typing.ArrayLike | None,
     cycle: numpy.typing.ArrayLike | None,
