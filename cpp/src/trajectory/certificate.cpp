@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "trajectory/certificate_problems.hpp"
+#include "trajectory/piece_proof.hpp"
 #include "trajectory/trajectory_piece_check.hpp"
 #include "viapoint/trajectory/bernstein.hpp"
 #include "viapoint/trajectory/bernstein_composition.hpp"
@@ -61,10 +62,10 @@ class Walk {
       before_.reset();
       return;
     }
-    const BernsteinComposition composition(piece);
-    check_timing(composition, piece, index);
-    for (std::size_t i = 0; i < joints_; ++i) add_joint(composition, piece, i);
-    for (int row = 0; row < limits_.couplings(); ++row) add_coupling(composition, piece, row);
+    const PieceProof proof(piece);
+    check_timing(proof, piece, index);
+    for (std::size_t i = 0; i < joints_; ++i) add_joint(proof, piece, i);
+    for (int row = 0; row < limits_.couplings(); ++row) add_coupling(proof, piece, row);
     join(piece);
     time_ += piece.duration;
   }
@@ -88,9 +89,9 @@ class Walk {
     findings_.malformed.push_back(std::move(problem));
   }
 
-  void check_timing(const BernsteinComposition& composition, const TrajectoryPiece& piece,
-                    std::size_t index) {
-    const BernsteinPolynomial u = composition.timing();
+  void check_timing(const PieceProof& proof, const TrajectoryPiece& piece, std::size_t index) {
+    if (proof.timing_in_range()) return;
+    const BernsteinPolynomial u = proof.composition().timing();
     // Shifted so that both excesses are peaks above what is allowed anyhow.
     Peak high{1.0, 1.0};
     Peak low{0.0, 0.0};
@@ -111,37 +112,45 @@ class Walk {
     }
   }
 
-  void add_joint(const BernsteinComposition& composition, const TrajectoryPiece& piece,
-                 std::size_t i) {
+  void add_joint(const PieceProof& proof, const TrajectoryPiece& piece, std::size_t i) {
     BernsteinComposition::Path path;
     for (std::size_t k = 0; k < 6; ++k) path[k] = piece.path[k][i];
 
     JointPeaks& joint = peaks_[i];
-    add_range(composition, path, piece, joint.highest, joint.lowest);
+    add_range(proof, path, piece, joint.highest, joint.lowest);
     const auto at = static_cast<Eigen::Index>(i);
     const std::array<double, 3> limit = {limits_.velocity[at], limits_.acceleration[at],
                                          limits_.jerk[at]};
+    std::array<double, 3> tolerance{}, enough{};
     for (std::size_t d = 0; d < 3; ++d) {
-      const int order = static_cast<int>(d) + 1;
-      const BernsteinPolynomial f = composition.of(path, order);
-      const double rounding = composition.rounding(path, order);
+      const double reached = joint.rates[d].peak.reached;
+      tolerance[d] = kTightness * std::max(limit[d], reached);
+      enough[d] = reached * (1.0 + kTightness);
+    }
+    const std::array<double, 3> bound = proof.rate_bounds(path, enough);
+    for (std::size_t d = 0; d < 3; ++d) {
       PlacedPeak& rate = joint.rates[d];
-      const double tolerance = kTightness * std::max(limit[d], rate.peak.reached);
-      take(rate, f, tolerance, rounding, piece);
-      take(rate, -f, tolerance, rounding, piece);
+      if (bound[d] <= enough[d]) {
+        rate.peak.bound = std::max(rate.peak.bound, bound[d]);
+        continue;
+      }
+      const int order = static_cast<int>(d) + 1;
+      const BernsteinPolynomial f = proof.composition().of(path, order);
+      const double rounding = proof.composition().rounding(path, order);
+      take(rate, f, tolerance[d], rounding, piece);
+      take(rate, -f, tolerance[d], rounding, piece);
     }
   }
 
-  void add_range(const BernsteinComposition& composition, const BernsteinComposition::Path& path,
+  void add_range(const PieceProof& proof, const BernsteinComposition::Path& path,
                  const TrajectoryPiece& piece, PlacedPeak& highest, PlacedPeak& lowest) {
-    const BernsteinPolynomial q = composition.of(path, 0);
-    const double rounding = composition.rounding(path, 0);
+    if (proof.within(path, -lowest.peak.reached, highest.peak.reached)) return;
+    const auto [q, rounding] = proof.same_range(path);
     take(highest, q, kTightness, rounding, piece);
     take(lowest, -q, kTightness, rounding, piece);
   }
 
-  void add_coupling(const BernsteinComposition& composition, const TrajectoryPiece& piece,
-                    int row) {
+  void add_coupling(const PieceProof& proof, const TrajectoryPiece& piece, int row) {
     BernsteinComposition::Path path{};
     for (std::size_t k = 0; k < 6; ++k) {
       for (int i = 0; i < limits_.joints(); ++i) {
@@ -149,7 +158,7 @@ class Walk {
       }
     }
     const auto at = static_cast<std::size_t>(row);
-    add_range(composition, path, piece, coupling_high_[at], coupling_low_[at]);
+    add_range(proof, path, piece, coupling_high_[at], coupling_low_[at]);
   }
 
   /// Compares the start of `piece` with the end of the one before.

@@ -4,68 +4,11 @@
 #include <cmath>
 #include <limits>
 
+#include "trajectory/rate_bounds.hpp"
 #include "viapoint/core/bernstein_bounds.hpp"
 
 namespace viapoint::path_timing {
 namespace {
-
-constexpr int kOrder = 6;                   // coefficients of a quintic
-using Taylor = std::array<double, kOrder>;  // derivatives 0..5, not divided by k!
-
-/// Derivatives 0..5 of a quintic with coefficients c at x.
-Taylor derivatives(const Taylor& c, double x) {
-  return {c[0] + x * (c[1] + x * (c[2] + x * (c[3] + x * (c[4] + x * c[5])))),
-          c[1] + x * (2 * c[2] + x * (3 * c[3] + x * (4 * c[4] + x * 5 * c[5]))),
-          2 * c[2] + x * (6 * c[3] + x * (12 * c[4] + x * 20 * c[5])),
-          6 * c[3] + x * (24 * c[4] + x * 60 * c[5]),
-          24 * c[4] + x * 120 * c[5],
-          120 * c[5]};
-}
-
-/// Bounds of |derivatives 1..5| within `radius` of where `d` was taken.
-Taylor derivative_bounds(const Taylor& d, double radius) {
-  Taylor bound{};
-  const Taylor m{std::abs(d[0]), std::abs(d[1]), std::abs(d[2]),
-                 std::abs(d[3]), std::abs(d[4]), std::abs(d[5])};
-  const double r = radius;
-  bound[5] = m[5];
-  bound[4] = m[4] + r * m[5];
-  bound[3] = m[3] + r * (m[4] + r / 2 * m[5]);
-  bound[2] = m[2] + r * (m[3] + r / 2 * (m[4] + r / 3 * m[5]));
-  bound[1] = m[1] + r * (m[2] + r / 2 * (m[3] + r / 3 * (m[4] + r / 4 * m[5])));
-  return bound;
-}
-
-/// Derivatives of u by time, from those by x.
-void by_time(Taylor& d, double duration) {
-  double power = 1.0;
-  for (size_t k = 1; k < kOrder; ++k) {
-    power /= duration;
-    d[k] *= power;
-  }
-}
-
-/// q̇, q̈, q⃛ by the chain rule; p are derivatives by u, w those of u by time.
-struct Rates {
-  double velocity, acceleration, jerk;
-};
-
-Rates rates(double p1, double p2, double p3, const Taylor& w) {
-  return {p1 * w[1], p2 * w[1] * w[1] + p1 * w[2],
-          (p3 * w[1] * w[1] + 3 * p2 * w[2]) * w[1] + p1 * w[3]};
-}
-
-/// Second time derivatives of q̇, q̈, q⃛ for magnitudes p, w (Faà di Bruno, all terms added).
-Rates rate_curvatures(const Taylor& p, const Taylor& w) {
-  const double w11 = w[1] * w[1];
-  const double third = p[3] * w11 * w[1] + 3 * p[2] * w[1] * w[2] + p[1] * w[3];
-  const double fourth = p[4] * w11 * w11 + 6 * p[3] * w11 * w[2] +
-                        p[2] * (4 * w[1] * w[3] + 3 * w[2] * w[2]) + p[1] * w[4];
-  const double fifth = p[5] * w11 * w11 * w[1] + 10 * p[4] * w11 * w[1] * w[2] +
-                       p[3] * (10 * w11 * w[3] + 15 * w[1] * w[2] * w[2]) +
-                       p[2] * (5 * w[1] * w[4] + 10 * w[2] * w[3]) + p[1] * w[5];
-  return {third, fourth, fifth};
-}
 
 /// A bound of |Σ c_k x^k| on [0, 1], relatively no more than `slack` above what is reached.
 template <size_t Size>
@@ -103,44 +46,23 @@ Shares straight_shares(const TimedSpan& span, const Stretch& stretch, double sla
 
 /// All joints' motion q(u(t)) against their limits, over `cells` parts of the span.
 ShareBounds curved_shares(const Course& course, const TimedSpan& span, int cells) {
-  const JointPiece& piece = *course.stretches()[span.piece].geometry;
-  const auto& q = piece.coefficients;
-  const auto joints = static_cast<int>(q.cols());
-  std::array<Rates, kMaxJoints> worst{};
-  for (int k = 0; k <= cells; ++k) {
-    Taylor w = derivatives(span.u, static_cast<double>(k) / cells);
-    by_time(w, span.duration);
-    const double u = w[0];
-    for (int i = 0; i < joints; ++i) {
-      const double c2 = q(2, i), c3 = q(3, i), c4 = q(4, i), c5 = q(5, i);
-      const Rates here = rates(q(1, i) + u * (2 * c2 + u * (3 * c3 + u * (4 * c4 + u * 5 * c5))),
-                               2 * c2 + u * (6 * c3 + u * (12 * c4 + u * 20 * c5)),
-                               6 * c3 + u * (24 * c4 + u * 60 * c5), w);
-      Rates& most = worst[static_cast<size_t>(i)];
-      most.velocity = std::max(most.velocity, std::abs(here.velocity));
-      most.acceleration = std::max(most.acceleration, std::abs(here.acceleration));
-      most.jerk = std::max(most.jerk, std::abs(here.jerk));
-    }
-  }
-  const Taylor middle = derivatives(span.u, 0.5);
-  Taylor bound = derivative_bounds(middle, 0.5);
-  by_time(bound, span.duration);
-  double end = 0.0;
-  for (double c : span.u) end += c;
-  const double radius = std::max(std::abs(end - middle[0]), std::abs(span.u[0] - middle[0]));
-  const double step = span.duration / cells, chord = step * step / 8.0;
+  const auto& q = course.stretches()[span.piece].geometry->coefficients;
   ShareBounds bounds;
-  for (int i = 0; i < joints; ++i) {
-    const Taylor path{q(0, i), q(1, i), q(2, i), q(3, i), q(4, i), q(5, i)};
-    const Rates curvature =
-        rate_curvatures(derivative_bounds(derivatives(path, middle[0]), radius), bound);
-    const Rates& most = worst[static_cast<size_t>(i)];
-    const Shares per = course.shares_per_rate(span.piece, i);
-    bounds.reached.include(
-        {most.velocity * per.velocity, most.acceleration * per.acceleration, most.jerk * per.jerk});
-    bounds.proven.include({(most.velocity + chord * curvature.velocity) * per.velocity,
-                           (most.acceleration + chord * curvature.acceleration) * per.acceleration,
-                           (most.jerk + chord * curvature.jerk) * per.jerk});
+  const int groups = (cells + TimingSamples::kMostParts - 1) / TimingSamples::kMostParts;
+  for (int group = 0; group < groups; ++group) {
+    const TimingSamples samples(span.u, span.duration, cells / groups,
+                                static_cast<double>(group) / groups,
+                                static_cast<double>(group + 1) / groups);
+    for (int i = 0; i < course.joints(); ++i) {
+      const Quintic path{q(0, i), q(1, i), q(2, i), q(3, i), q(4, i), q(5, i)};
+      const Rates reached = samples.reached(path), between = samples.between(path);
+      const Shares per = course.shares_per_rate(span.piece, i);
+      bounds.reached.include({reached.velocity * per.velocity,
+                              reached.acceleration * per.acceleration, reached.jerk * per.jerk});
+      bounds.proven.include({(reached.velocity + between.velocity) * per.velocity,
+                             (reached.acceleration + between.acceleration) * per.acceleration,
+                             (reached.jerk + between.jerk) * per.jerk});
+    }
   }
   return bounds;
 }
@@ -242,7 +164,7 @@ std::vector<TrajectoryPiece> to_pieces(const JointPath& path, const std::vector<
     piece.joints = from.joints();
     piece.move = from.move;
     piece.timing = span.u;
-    for (int k = 0; k < kOrder; ++k) {
+    for (int k = 0; k < 6; ++k) {
       for (int i = 0; i < from.joints(); ++i) {
         piece.path[static_cast<size_t>(k)][static_cast<size_t>(i)] = from.coefficients(k, i);
       }

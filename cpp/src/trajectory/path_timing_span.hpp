@@ -36,10 +36,8 @@ struct ShareBounds {
   Shares proven;   ///< nowhere exceeded
 };
 
-/// Bounds of one span. Between two instants Δt apart, |f| <= max(|f0|, |f1|) + Δt²/8 · sup|f''|,
-/// the error of linear interpolation; sup|f''| comes from the Taylor forms of q(u) and u(t) about
-/// the middle of the span and the chain rule (Faà di Bruno), without sampling.
-/// @param cells number of parts that the span is cut into
+/// Bounds of one span, by samples and what may lie between them (rate_bounds.hpp).
+/// @param cells number of parts that the span is cut into, a power of two
 /// @param slack how far apart the two may be on a straight stretch, relative
 [[nodiscard]] ShareBounds bound_shares(const Course& course, const TimedSpan& span, int cells,
                                        double slack);

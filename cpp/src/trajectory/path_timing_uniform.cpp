@@ -120,9 +120,12 @@ std::optional<UniformCeilings> straight_ceilings(const JointPath& path, const Jo
 std::vector<TimedSpan> seven_phases(const JointPath& path, const UniformCeilings& ceilings) {
   const JerkProfile profile =
       rest_to_rest(path.length(), ceilings.rate, ceilings.change, ceilings.jerk);
-  // Shorter than this share of its phase, a cut is rounding and not a span of its own. A whole
-  // phase always is one, however short: speed or acceleration may change from nothing to all in it.
+  // Shorter than this share of its phase, a cut is rounding and not a span of its own.
   constexpr double kSliver = 1e-14;
+  // A phase without jerk that lasts less than this share of its neighbours is left out: rounding
+  // makes them where two limits meet, time cannot tell where they begin, and nothing changes in
+  // them. One with jerk stays, however short: acceleration may change from nothing to all in it.
+  constexpr double kShortest = 1e-12;
   std::vector<TimedSpan> spans;
   RateState state;  // s within the piece
   size_t piece = 0;
@@ -130,6 +133,11 @@ std::vector<TimedSpan> seven_phases(const JointPath& path, const UniformCeilings
   for (int k = 0; k < profile.phases; ++k) {
     const double jerk = profile.jerk[static_cast<size_t>(k)];
     double left = profile.duration[static_cast<size_t>(k)];
+    if (jerk == 0.0) {  // never the first or the last phase
+      const auto here = static_cast<size_t>(k);
+      const double around = profile.duration[here - 1] + profile.duration[here + 1];
+      if (left < kShortest * around) continue;
+    }
     const double sliver = kSliver * left;
     while (left > sliver) {
       const double length = path.pieces()[piece].length;

@@ -15,24 +15,32 @@ bool all_finite(const TrajectoryPiece& piece) {
          });
 }
 
-}  // namespace
+bool is_duration(double seconds) { return seconds > 0.0 && std::isfinite(seconds); }
 
-std::optional<std::string> find_fault(const TrajectoryPiece& piece, int joints) {
+std::string describe_fault(const TrajectoryPiece& piece, int joints) {
   std::ostringstream text;
   if (piece.joints < 1 || piece.joints > kMaxJoints) {
     text << "has " << piece.joints << " joints; allowed are 1 to " << kMaxJoints;
   } else if (piece.joints != joints) {
     text << "has " << piece.joints << " joints; the motion has " << joints;
-  } else if (!(piece.duration > 0.0) || !std::isfinite(piece.duration)) {
+  } else if (!is_duration(piece.duration)) {
     text << "lasts " << piece.duration << " s; it must be more than 0 and finite";
   } else if (!all_finite(piece)) {
     text << "has a coefficient that is not a finite number";
-  } else if (piece.outputs < 0 || piece.outputs > kMaxOutputsAPiece) {
-    text << "changes " << piece.outputs << " outputs; allowed are 0 to " << kMaxOutputsAPiece;
   } else {
-    return std::nullopt;
+    text << "changes " << piece.outputs << " outputs; allowed are 0 to " << kMaxOutputsAPiece;
   }
   return text.str();
+}
+
+}  // namespace
+
+std::optional<std::string> find_fault(const TrajectoryPiece& piece, int joints) {
+  const bool sound = piece.joints >= 1 && piece.joints <= kMaxJoints && piece.joints == joints &&
+                     is_duration(piece.duration) && all_finite(piece) && piece.outputs >= 0 &&
+                     piece.outputs <= kMaxOutputsAPiece;
+  if (sound) return std::nullopt;
+  return describe_fault(piece, joints);
 }
 
 }  // namespace viapoint

@@ -1,0 +1,46 @@
+/// @file
+/// What is known of a trajectory piece, no dearer than what is asked: quick bounds first, its
+/// composed polynomials where these do not tell.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "trajectory/rate_bounds.hpp"
+#include "viapoint/trajectory/bernstein_composition.hpp"
+#include "viapoint/trajectory/trajectory_piece.hpp"
+
+namespace viapoint {
+
+/// The piece must outlive it and be sound (find_fault). Threads: one.
+class PieceProof {
+ public:
+  explicit PieceProof(const TrajectoryPiece& piece);
+
+  /// True if u is seen at once to stay in [0, 1]; false tells nothing.
+  [[nodiscard]] bool timing_in_range() const { return timing_in_range_; }
+  /// True if Σ path[k] u(x)^k is seen at once to stay in [low, high]; false tells nothing.
+  [[nodiscard]] bool within(const Quintic& path, double low, double high) const;
+  /// A polynomial, and how far rounding may have moved its coefficients.
+  struct Range {
+    BernsteinPolynomial f;
+    double rounding = 0.0;
+  };
+  /// Σ path[k] u(x)^k as a line between its ends, if it is seen at once that it only rises or only
+  /// falls: its range is the same then. Otherwise the polynomial itself.
+  [[nodiscard]] Range same_range(const Quintic& path) const;
+  /// Bounds of the rates' magnitudes, quick ones: where they are not at most `enough`, they need
+  /// not be close.
+  [[nodiscard]] std::array<double, 3> rate_bounds(const Quintic& path,
+                                                  const std::array<double, 3>& enough) const;
+  [[nodiscard]] const BernsteinComposition& composition() const;
+
+ private:
+  const TrajectoryPiece& piece_;
+  bool timing_in_range_, timing_rises_;
+  TimingSamples few_;
+  mutable std::optional<TimingSamples> many_;
+  mutable std::optional<BernsteinComposition> composition_;
+};
+
+}  // namespace viapoint
