@@ -123,7 +123,7 @@ Columns columns_of(const LogHandle& log) {
 
 std::vector<std::string> run_states() {
   std::vector<std::string> states;
-  for (int i = 0; i <= static_cast<int>(RunState::kFault); ++i) {
+  for (int i = 0; i <= static_cast<int>(RunState::kJogging); ++i) {
     states.emplace_back(to_string(static_cast<RunState>(i)));
   }
   return states;

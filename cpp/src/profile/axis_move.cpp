@@ -40,7 +40,7 @@ std::string_view to_string(MoveStatus status) noexcept {
   return "unknown status";
 }
 
-AxisState AxisMove::at(double t) const noexcept {
+AxisState AxisMove::at(double t) const noexcept VIAPOINT_NONBLOCKING {
   if (phases == 0 || t >= total) return end;
   if (!(t > 0.0)) return phase[0].from;
   size_t i = 0;
@@ -68,7 +68,7 @@ void AxisMove::append(double jerk, double seconds) noexcept {
 }
 
 MoveStatus quickest_move(const AxisState& start, const AxisState& end, const AxisLimits& limits,
-                         AxisMove& move) noexcept {
+                         AxisMove& move) noexcept VIAPOINT_NONBLOCKING {
   MoveProblem problem;
   const MoveStatus status = problem.solve(start, end, limits, move);
   if (status == MoveStatus::kSolved) problem.append_quickest(move);
@@ -76,7 +76,8 @@ MoveStatus quickest_move(const AxisState& start, const AxisState& end, const Axi
 }
 
 MoveStatus quickest_velocity_change(const AxisState& start, const AxisState& end,
-                                    const AxisLimits& limits, AxisMove& move) noexcept {
+                                    const AxisLimits& limits,
+                                    AxisMove& move) noexcept VIAPOINT_NONBLOCKING {
   AxisState there = end;
   there.q = start.q;
   AxisProblem problem;

@@ -59,7 +59,7 @@ MoveStatus MoveProblem::solve_between_walls(const AxisState& start, const AxisLi
 
   AxisMove free = begun;
   free_.append_quickest(free);
-  const Extent extent = extent_of(free);
+  const AxisMove::Extent extent = free.extent();
   const double low = limits.position_min, high = limits.position_max;
   between_.walls = {low, high,
                     kWallSlack * (extent.high - extent.low) +
@@ -73,7 +73,7 @@ MoveStatus MoveProblem::solve_between_walls(const AxisState& start, const AxisLi
     AxisMove stop;
     const MoveStatus status = quickest_velocity_change(start, {}, between_.limits, stop);
     if (status != MoveStatus::kSolved) return status;
-    const Extent reach = extent_of(stop);
+    const AxisMove::Extent reach = stop.extent();
     between_.walls.start_low = std::min(low, reach.low);
     between_.walls.start_high = std::max(high, reach.high);
   }

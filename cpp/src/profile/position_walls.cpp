@@ -33,10 +33,10 @@ bool visit_turns(const AxisMove& move, int first, Visit visit) noexcept {
 
 }  // namespace
 
-Extent extent_of(const AxisMove& move, int first) noexcept {
-  const double q = first < move.phases ? move.phase[static_cast<size_t>(first)].from.q : move.end.q;
-  Extent extent{q, q};
-  visit_turns(move, first, [&](double turn) {
+AxisMove::Extent AxisMove::extent() const noexcept VIAPOINT_NONBLOCKING {
+  const double start = phases > 0 ? phase[0].from.q : end.q;
+  Extent extent{start, start};
+  visit_turns(*this, 0, [&](double turn) {
     extent = {std::min(extent.low, turn), std::max(extent.high, turn)};
     return true;
   });

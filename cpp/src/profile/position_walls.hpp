@@ -6,14 +6,6 @@
 
 namespace viapoint {
 
-/// The least and the greatest position of a motion.
-struct Extent {
-  double low, high;
-};
-
-/// From the phase `first` on; exact. Real-time: safe.
-[[nodiscard]] Extent extent_of(const AxisMove& move, int first = 0) noexcept;
-
 /// Where a motion may be.
 struct Walls {
   double low, high;  ///< infinite where there is none

@@ -62,7 +62,7 @@ bool is_sound(const StateToStateOptions& options) noexcept {
 
 MoveStatus StateToState::plan(std::span<const AxisState> start, std::span<const AxisState> end,
                               std::span<const AxisLimits> limits,
-                              const StateToStateOptions& options) noexcept {
+                              const StateToStateOptions& options) noexcept VIAPOINT_NONBLOCKING {
   joints_ = 0;
   culprit_ = -1;
   duration_ = 0.0;
@@ -253,7 +253,7 @@ MoveStatus StateToState::plan_line(std::span<const AxisState> start, std::span<c
   return MoveStatus::kSolved;
 }
 
-JointState StateToState::at(double t) const noexcept {
+JointState StateToState::at(double t) const noexcept VIAPOINT_NONBLOCKING {
   JointState state = JointState::zero(joints_);
   for (int i = 0; i < joints_; ++i) {
     const AxisState s = axis(i).at(t);

@@ -20,14 +20,15 @@ constexpr int kMostTouches = 4;
 
 }  // namespace
 
-double RouteSearch::leg(const AxisState& from, const AxisState& to, Extent* extent) const noexcept {
+double RouteSearch::leg(const AxisState& from, const AxisState& to,
+                        AxisMove::Extent* extent) const noexcept {
   AxisMove move;
   AxisLimits limits = limits_;
   limits.position_min = -kNever;
   limits.position_max = kNever;
   if (quickest_move(from, to, limits, move) != MoveStatus::kSolved) return kNever;
   if (walls_.hold(move)) return move.total;
-  if (extent != nullptr) *extent = extent_of(move);
+  if (extent != nullptr) *extent = move.extent();
   return kNever;
 }
 
@@ -73,7 +74,7 @@ Route RouteSearch::quickest() const noexcept {
 RouteSearch::Touches RouteSearch::through(const AxisState& from, const AxisState& touch,
                                           const AxisState& to, int most) const noexcept {
   Touches all{{touch}, 1, kNever};
-  Extent ignored{};
+  AxisMove::Extent ignored{};
   const double first = leg(from, touch, &ignored), second = leg(touch, to, &ignored);
   all.duration = first + second;
   if (most < 2 || std::isfinite(all.duration)) return all;
@@ -96,7 +97,7 @@ RouteSearch::Touches RouteSearch::search(const AxisState& from, const AxisState&
   if (admit(walls, from, to) != MoveStatus::kSolved) return best;
   AxisMove free;
   if (quickest_move(from, to, limits_, free) != MoveStatus::kSolved) return best;
-  const Extent extent = extent_of(free);
+  const AxisMove::Extent extent = free.extent();
   for (const bool upper : {true, false}) {
     const bool is_left = upper ? extent.high > walls_.high : extent.low < walls_.low;
     if (!is_left) continue;
@@ -143,7 +144,7 @@ int RouteSearch::come_to_rest(AxisState from, const AxisLimits& limits, const Wa
       stop[touches] = {move.end.q, 0.0, 0.0, 0.0};
       return touches + 1;
     }
-    const bool upper = extent_of(move).high > walls.high;
+    const bool upper = move.extent().high > walls.high;
     const AxisLimits l = upper ? limits : mirrored(limits);
     const AxisState s = upper ? from : mirrored(from);
     const double wall = upper ? walls.high : -walls.low;

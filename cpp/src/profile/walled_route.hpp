@@ -52,7 +52,7 @@ class RouteSearch {
   [[nodiscard]] MoveStatus admit_high(Walls& walls, const AxisState& from, const AxisState& to,
                                       const AxisLimits& limits) const noexcept;
   [[nodiscard]] double leg(const AxisState& from, const AxisState& to,
-                           Extent* extent = nullptr) const noexcept;
+                           AxisMove::Extent* extent = nullptr) const noexcept;
   [[nodiscard]] Touches search(const AxisState& from, const AxisState& to, int most,
                                bool nested = false) const noexcept;
   [[nodiscard]] Touches through(const AxisState& from, const AxisState& touch, const AxisState& to,

@@ -106,9 +106,23 @@ struct ControllerLoop::Impl {
 
   void bring_to_rest() {
     const std::lock_guard lock(admission);
+    if (jogs()) channels.jog.write(JointVector::Zero(limits.joints()));
+    while (jogs()) std::this_thread::sleep_for(kCompanionPeriod);
     if (job == nullptr) return;
     job->stop();
     while (!job->ended()) std::this_thread::sleep_for(kCompanionPeriod);
+  }
+
+  /// A jog that is under way, or wished and not begun. A drive that failed jogs no more.
+  [[nodiscard]] bool jogs() const {
+    if (channels.faulted.load(std::memory_order_acquire)) return false;
+    return channels.jog.pending() || channels.jogging.load(std::memory_order_acquire);
+  }
+
+  void require_no_fault() {
+    if (!channels.faulted.load(std::memory_order_acquire)) return;
+    throw MotionError(ErrorCode::kDriveFault, powered.drive().fault(),
+                      {"clear the fault at the drive, then connect again"});
   }
 
   [[nodiscard]] bool busy() const { return job != nullptr && !job->ended(); }
@@ -178,14 +192,15 @@ ControllerLoop::~ControllerLoop() = default;
 std::shared_ptr<Job> ControllerLoop::run(std::shared_ptr<const Trajectory> trajectory) {
   const std::lock_guard lock(impl_->admission);
   if (trajectory == nullptr) throw MotionError(ErrorCode::kBadArgument, "there is no motion");
-  if (impl_->channels.faulted.load(std::memory_order_acquire)) {
-    throw MotionError(ErrorCode::kDriveFault, impl_->powered.drive().fault(),
-                      {"clear the fault at the drive, then connect again"});
-  }
+  impl_->require_no_fault();
   impl_->await_log_of_ended_run();
   if (impl_->busy()) {
     throw MotionError(ErrorCode::kBusy, "a run is already under way",
                       {"wait for its end", "stop it first"});
+  }
+  if (impl_->jogs()) {
+    throw MotionError(ErrorCode::kBusy, "the arm is being jogged",
+                      {"stop the jog, and wait until the arm rests"});
   }
   admit(*trajectory, impl_->limits, position());
   auto job = std::make_shared<LoopJob>(std::move(trajectory), impl_->log_records);
@@ -197,6 +212,56 @@ std::shared_ptr<Job> ControllerLoop::run(std::shared_ptr<const Trajectory> traje
     throw MotionError(ErrorCode::kInternal, "the queue of motions is full although none runs");
   }
   return job;
+}
+
+void ControllerLoop::jog(const JointVector& velocity) {
+  const JointLimits& limits = impl_->limits;
+  if (velocity.size() != limits.joints()) {
+    throw MotionError(ErrorCode::kBadArgument, "the jog has " + std::to_string(velocity.size()) +
+                                                   " velocities, the arm has " +
+                                                   std::to_string(limits.joints()) + " joints");
+  }
+  for (int i = 0; i < velocity.size(); ++i) {
+    if (!std::isfinite(velocity[i])) {
+      throw MotionError(ErrorCode::kBadArgument,
+                        "the jog's velocity of joint " + std::to_string(i + 1) + " is not finite");
+    }
+    if (std::abs(velocity[i]) <= limits.velocity[i]) continue;
+    Problem problem;
+    problem.code = ErrorCode::kVelocityLimit;
+    problem.message = "the jog asks joint " + std::to_string(i + 1) + " for " +
+                      std::to_string(velocity[i]) + " rad/s or m/s; its limit is " +
+                      std::to_string(limits.velocity[i]);
+    problem.ways_out = {"jog slower"};
+    problem.joint = i;
+    problem.value = velocity[i];
+    problem.limit = limits.velocity[i];
+    throw MotionError(problem);
+  }
+  const std::lock_guard lock(impl_->admission);
+  impl_->require_no_fault();
+  impl_->await_log_of_ended_run();
+  if (impl_->busy()) {
+    throw MotionError(ErrorCode::kBusy, "a run is under way, and the arm jogs only between runs",
+                      {"wait for its end", "stop it first"});
+  }
+  impl_->channels.jog.write(velocity);
+}
+
+bool ControllerLoop::jogging() const { return impl_->jogs(); }
+
+std::string ControllerLoop::jog_block() const {
+  const JogBlock block = impl_->channels.jog_block.load(std::memory_order_relaxed);
+  const std::string index = std::to_string(block.index + 1);
+  switch (block.kind) {
+    case JogBlock::Kind::kNone:
+      break;
+    case JogBlock::Kind::kPositionLimit:
+      return "joint " + index + " is at its position limit";
+    case JogBlock::Kind::kCouplingLimit:
+      return "the arm has stopped before its coupled limit " + index;
+  }
+  return {};
 }
 
 void ControllerLoop::set_override(double share) {

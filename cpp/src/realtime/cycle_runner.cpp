@@ -13,6 +13,7 @@ CycleRunner::CycleRunner(Drive& drive, Clock& clock, LoopChannels& channels,
       channels_(channels),
       interpolator_(limits, cycle, start.q),
       cycle_(cycle.count()),
+      wished_(start.q),
       measurement_(start) {
   setpoint_.q = start.q;
 }
@@ -39,7 +40,8 @@ void CycleRunner::do_cycle() noexcept VIAPOINT_NONBLOCKING {
     refuse_next();
     return;
   }
-  if (motion_ == nullptr) begin_next();
+  if (motion_ == nullptr && !interpolator_.jogging()) begin_next();
+  if (motion_ == nullptr) jog();
   interpolator_.set_override(channels_.override_share.load(std::memory_order_relaxed));
   if (motion_ != nullptr) interpolator_.wish(motion_->wish.load(std::memory_order_acquire));
 
@@ -48,6 +50,8 @@ void CycleRunner::do_cycle() noexcept VIAPOINT_NONBLOCKING {
   const std::int64_t end = clock_.now();
   const bool fault = drive_.exchange(setpoint_, measurement_) == DriveStatus::kFault;
   if (fault) interpolator_.abandon();
+  channels_.jogging.store(interpolator_.jogging(), std::memory_order_release);
+  channels_.jog_block.store(interpolator_.jog_block(), std::memory_order_relaxed);
   channels_.snapshot.write(setpoint_.q, measurement_);
 
   if (motion_ != nullptr) {
@@ -55,6 +59,14 @@ void CycleRunner::do_cycle() noexcept VIAPOINT_NONBLOCKING {
     finish();
   }
   if (fault) channels_.faulted.store(true, std::memory_order_release);
+}
+
+void CycleRunner::jog() noexcept VIAPOINT_NONBLOCKING {
+  if (!channels_.jog.read(wished_)) return;
+  interpolator_.jog(wished_);
+  // In this order: who sees the wish done sees the jog that it began.
+  channels_.jogging.store(interpolator_.jogging(), std::memory_order_release);
+  channels_.jog.done();
 }
 
 void CycleRunner::begin_next() noexcept VIAPOINT_NONBLOCKING {

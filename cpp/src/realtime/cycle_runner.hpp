@@ -6,6 +6,7 @@
 #include <boost/lockfree/spsc_queue.hpp>
 #include <cstdint>
 
+#include "realtime/jog_channel.hpp"
 #include "realtime/snapshot.hpp"
 #include "viapoint/realtime/clock.hpp"
 #include "viapoint/realtime/drive.hpp"
@@ -22,6 +23,9 @@ struct LoopChannels {
   /// Eight seconds at 500 Hz for the companion to come round.
   boost::lockfree::spsc_queue<LogRecord, boost::lockfree::capacity<4096>> log;
   Snapshot snapshot;                        ///< tick
+  JogChannel jog;                           ///< ordinary threads, one at a time
+  std::atomic<bool> jogging{false};         ///< tick
+  std::atomic<JogBlock> jog_block{};        ///< tick
   std::atomic<double> override_share{1.0};  ///< ordinary threads
   std::atomic<bool> quit{false};            ///< ordinary threads
   std::atomic<bool> faulted{false};         ///< tick
@@ -42,6 +46,8 @@ class CycleRunner {
  private:
   void wait_for_cycle() noexcept;
   void do_cycle() noexcept VIAPOINT_NONBLOCKING;
+  /// Acts on a wish to jog, and says what came of it.
+  void jog() noexcept VIAPOINT_NONBLOCKING;
   void begin_next() noexcept VIAPOINT_NONBLOCKING;
   /// Gives back a motion that was queued while the drive failed.
   void refuse_next() noexcept VIAPOINT_NONBLOCKING;
@@ -61,6 +67,7 @@ class CycleRunner {
   /// setpoint has brought the arm.
   bool arriving_ = false;
   std::uint64_t cycle_of_run_ = 0;
+  JointVector wished_;  ///< joint velocities
   Setpoint setpoint_;
   Measurement measurement_;
   LogRecord record_;

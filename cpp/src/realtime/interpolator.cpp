@@ -17,6 +17,8 @@ Interpolator::Interpolator(const JointLimits& limits, std::chrono::nanoseconds c
                            const JointVector& position)
     : cycle_(std::chrono::duration<double>(cycle).count()),
       governor_(limits, cycle_),
+      jog_(limits, cycle_),
+      jog_cycles_(static_cast<int>(kJogLease / cycle) + 1),
       lookahead_(limits, governor_.cell()),
       position_(position) {
   shown_ = {0.0, 0.0, 0.0};
@@ -46,13 +48,28 @@ void Interpolator::wish(Wish wish) noexcept VIAPOINT_NONBLOCKING {
 
 void Interpolator::abandon() noexcept VIAPOINT_NONBLOCKING {
   motion_ = nullptr;
+  jog_.abandon();
   run_state_ = RunState::kFault;
+}
+
+void Interpolator::jog(const JointVector& velocity) noexcept VIAPOINT_NONBLOCKING {
+  if (motion_ != nullptr || run_state_ == RunState::kFault) return;
+  jog_.wish(velocity, jog_cycles_, position_);
 }
 
 double Interpolator::target() const noexcept { return wish_ == Wish::kRun ? override_ : 0.0; }
 
 RunState Interpolator::tick(Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKING {
   setpoint.cycle = cycles_++;
+  if (motion_ == nullptr && jog_.active()) {
+    shown_ = {0.0, 0.0, 0.0};
+    move_ = -1;
+    jog_.tick(setpoint);
+    position_ = setpoint.q;
+    setpoint.outputs = outputs_;
+    run_state_ = jog_.active() ? RunState::kJogging : RunState::kIdle;
+    return run_state_;
+  }
   if (motion_ == nullptr) {
     shown_.rate = 0.0;
     setpoint.q = position_;

@@ -20,6 +20,8 @@ const char* to_string(RunState state) {
       return "finished";
     case RunState::kFault:
       return "fault";
+    case RunState::kJogging:
+      return "jogging";
   }
   return "unknown";
 }

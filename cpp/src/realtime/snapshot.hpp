@@ -6,8 +6,8 @@
 #include <atomic>
 #include <cstdint>
 
+#include "viapoint/core/nonblocking.hpp"
 #include "viapoint/realtime/drive.hpp"
-#include "viapoint/realtime/nonblocking.hpp"
 
 namespace viapoint {
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <string_view>
 
+#include "viapoint/core/nonblocking.hpp"
 #include "viapoint/profile/jerk_profile.hpp"
 
 namespace viapoint {
@@ -66,7 +67,12 @@ struct AxisMove {
   double total = 0.0;  ///< [s]
 
   /// State at t, clamped to [0, total].
-  [[nodiscard]] AxisState at(double t) const noexcept;
+  [[nodiscard]] AxisState at(double t) const noexcept VIAPOINT_NONBLOCKING;
+  /// The least and the greatest position; exact.
+  struct Extent {
+    double low, high;
+  };
+  [[nodiscard]] Extent extent() const noexcept VIAPOINT_NONBLOCKING;
 
   /// Empties the motion and puts it at `start`.
   void begin(const AxisState& start) noexcept;
@@ -88,12 +94,13 @@ struct AxisMove {
 /// @return kSolved, or why there is no such motion; `move` is then left alone
 /// Real-time: safe. Threads: none shared.
 [[nodiscard]] MoveStatus quickest_move(const AxisState& start, const AxisState& end,
-                                       const AxisLimits& limits, AxisMove& move) noexcept;
+                                       const AxisLimits& limits,
+                                       AxisMove& move) noexcept VIAPOINT_NONBLOCKING;
 
 /// The quickest motion to the velocity and acceleration of `end`, wherever that is; end.q is not
 /// read, nor are the position limits. What a stop is made of. Otherwise as quickest_move.
 [[nodiscard]] MoveStatus quickest_velocity_change(const AxisState& start, const AxisState& end,
                                                   const AxisLimits& limits,
-                                                  AxisMove& move) noexcept;
+                                                  AxisMove& move) noexcept VIAPOINT_NONBLOCKING;
 
 }  // namespace viapoint

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "viapoint/core/joint_state.hpp"
+#include "viapoint/core/nonblocking.hpp"
 #include "viapoint/profile/axis_move.hpp"
 
 namespace viapoint {
@@ -33,7 +34,8 @@ class StateToState {
   /// @return kSolved, or why not; the motion is then empty, and culprit() names the axis
   [[nodiscard]] MoveStatus plan(std::span<const AxisState> start, std::span<const AxisState> end,
                                 std::span<const AxisLimits> limits,
-                                const StateToStateOptions& options = {}) noexcept;
+                                const StateToStateOptions& options = {}) noexcept
+      VIAPOINT_NONBLOCKING;
 
   [[nodiscard]] int joints() const noexcept { return joints_; }
   [[nodiscard]] double duration() const noexcept { return duration_; }
@@ -42,7 +44,7 @@ class StateToState {
   /// @pre 0 <= i < joints()
   [[nodiscard]] const AxisMove& axis(int i) const noexcept { return axes_[static_cast<size_t>(i)]; }
   /// State at t, clamped to [0, duration()].
-  [[nodiscard]] JointState at(double t) const noexcept;
+  [[nodiscard]] JointState at(double t) const noexcept VIAPOINT_NONBLOCKING;
 
  private:
   [[nodiscard]] MoveStatus plan_apart(std::span<const AxisState> start,

@@ -79,8 +79,20 @@ class ControllerLoop {
 
   /// Admits the motion and begins it at the next cycle. Refused before anything moves: a
   /// certificate (made anew here, from the pieces) that does not hold, kNotAtStart when the arm
-  /// rests farther than 1e-6 rad or m from the motion's first point, kNotAtRest, kBusy.
+  /// rests farther than 1e-6 rad or m from the motion's first point, kNotAtRest, kBusy (also while
+  /// the arm jogs).
   [[nodiscard]] std::shared_ptr<Job> run(std::shared_ptr<const Trajectory> trajectory);
+  /// Hold-to-run: joint velocities (n,) [rad/s or m/s] for the next 250 ms; calling again renews
+  /// them, zero or silence brings the arm to rest within its limits. Joints stop at their position
+  /// limits by themselves, the arm before its coupled limits. Refused: kBusy while a run is under
+  /// way, paused or not; kVelocityLimit; kBadArgument; kDriveFault. The override does not act on
+  /// it.
+  void jog(const JointVector& velocity);
+  /// True until a jog has come to rest; no run is admitted meanwhile.
+  [[nodiscard]] bool jogging() const;
+  /// What keeps the jog, or kept the last one, from doing what was wished; empty where nothing
+  /// does.
+  [[nodiscard]] std::string jog_block() const;
   /// Share of the planned speed in [0, 1]; applies to this run and the next ones.
   void set_override(double share);
   [[nodiscard]] double override_share() const;

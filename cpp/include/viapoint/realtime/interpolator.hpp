@@ -7,10 +7,11 @@
 #include <cstdint>
 
 #include "viapoint/core/joint_limits.hpp"
+#include "viapoint/core/nonblocking.hpp"
 #include "viapoint/realtime/drive.hpp"
+#include "viapoint/realtime/jog.hpp"
 #include "viapoint/realtime/lookahead.hpp"
 #include "viapoint/realtime/motion_log.hpp"
-#include "viapoint/realtime/nonblocking.hpp"
 #include "viapoint/realtime/rate_governor.hpp"
 #include "viapoint/trajectory/trajectory.hpp"
 
@@ -19,7 +20,7 @@ namespace viapoint {
 /// What the operator wants of the motion under way. A stop is final for its motion.
 enum class Wish : std::uint8_t { kRun, kPause, kStop };
 
-/// Runs one motion after another, each from rest to rest, and holds position between them.
+/// Runs one motion after another, each from rest to rest, and holds position or jogs between them.
 ///
 /// At full rate the setpoint of cycle k is the trajectory at exactly k cycles of nominal time; the
 /// last one is its end point. Override, pause, resume and stop change only the rate at which
@@ -37,18 +38,30 @@ class Interpolator {
                const JointVector& position);
 
   /// Takes a motion that begins where the arm rests, at rest (admit() has checked it). It must stay
-  /// alive until active() is false. @pre !active()
+  /// alive until active() is false. @pre !active(), !jogging()
   void begin(const Trajectory& motion) noexcept VIAPOINT_NONBLOCKING;
   /// Share of the planned speed, clamped to [0, 1]; 0 acts as a pause. Kept between motions.
   void set_override(double share) noexcept VIAPOINT_NONBLOCKING;
   void wish(Wish wish) noexcept VIAPOINT_NONBLOCKING;
 
-  /// Drops the motion on the spot, for a drive that has failed; then state kFault.
+  /// Jogs at these joint velocities (n,) [rad/s or m/s] until kJogLease is over, from rest or on
+  /// from the jog under way; zero comes to rest at once. Override does not act on it. Ignored while
+  /// a motion is active and after a fault.
+  void jog(const JointVector& velocity) noexcept VIAPOINT_NONBLOCKING;
+  /// True until a jog has come to rest.
+  [[nodiscard]] bool jogging() const noexcept { return jog_.active(); }
+  /// What keeps the jog, or kept the last one, from doing what was wished.
+  [[nodiscard]] JogBlock jog_block() const noexcept { return jog_.block(); }
+  /// How long a wish to jog counts without being renewed.
+  static constexpr std::chrono::milliseconds kJogLease{250};
+
+  /// Drops the motion or jog on the spot, for a drive that has failed; then state kFault.
   void abandon() noexcept VIAPOINT_NONBLOCKING;
 
   /// One cycle: fills in the setpoint due now and moves on. Returns the state it belongs to:
-  /// kFinished with the end point, kStopped with the first setpoint at rest after a stop. Without a
-  /// motion it holds the position and returns the last state again.
+  /// kFinished with the end point, kStopped with the first setpoint at rest after a stop. Jogging
+  /// it returns kJogging, and kIdle with the first setpoint at rest. Without either it holds the
+  /// position and returns the last state again.
   RunState tick(Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKING;
 
   /// Fills in of `record` what the last tick, which gave `setpoint`, decided: all but the cycle,
@@ -78,6 +91,8 @@ class Interpolator {
 
   double cycle_;
   RateGovernor governor_;
+  Jog jog_;
+  int jog_cycles_;  ///< that a wish counts for
   Lookahead lookahead_;
   const Trajectory* motion_ = nullptr;
   std::size_t piece_ = 0;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "viapoint/core/joint_limits.hpp"
-#include "viapoint/realtime/nonblocking.hpp"
+#include "viapoint/core/nonblocking.hpp"
 #include "viapoint/trajectory/trajectory.hpp"
 
 namespace viapoint {

@@ -18,6 +18,7 @@ enum class RunState : std::uint8_t {
   kStopped,  ///< came to rest on the path before its end
   kFinished,
   kFault,
+  kJogging,  ///< follows wished velocities, or comes to rest after them
 };
 
 [[nodiscard]] const char* to_string(RunState state);

@@ -9,7 +9,7 @@
 
 #include "viapoint/realtime/interpolator.hpp"
 #include "viapoint/realtime/motion_log.hpp"
-#include "viapoint/realtime/nonblocking.hpp"
+#include "viapoint/core/nonblocking.hpp"
 #include "viapoint/trajectory/trajectory.hpp"
 
 namespace viapoint {

@@ -23,7 +23,7 @@
 
 #include "viapoint/core/joint_limits.hpp"
 #include "viapoint/realtime/lookahead.hpp"
-#include "viapoint/realtime/nonblocking.hpp"
+#include "viapoint/core/nonblocking.hpp"
 
 namespace viapoint {
 

@@ -1,6 +1,7 @@
 // Runs the real-time path under RealtimeSanitizer, which ends the process at the first heap call,
 // lock or system call below a function marked VIAPOINT_NONBLOCKING. With --allocate it does what is
 // forbidden, to show that it would be caught.
+#include <array>
 #include <cstdio>
 #include <cstring>
 #include <memory>
@@ -9,6 +10,7 @@
 
 #include "realtime/random_motion.hpp"
 #include "viapoint/drives/simulated_drive.hpp"
+#include "viapoint/profile/state_to_state.hpp"
 #include "viapoint/realtime/controller_loop.hpp"
 #include "viapoint/realtime/interpolator.hpp"
 
@@ -52,6 +54,48 @@ void tick_with_commands() {
   std::printf("%d ticks, %d motions stopped on their path\n", ticks, stopped);
 }
 
+/// Jogs with position and coupled limits in the way.
+void jog_at_random() {
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    std::mt19937 random(seed);
+    const Motion motion = random_motion(random);
+    const JointLimits& limits = motion.limits;
+    Interpolator interpolator(limits, kCycle, motion.trajectory.at(0.0).q);
+    Setpoint setpoint;
+    JointVector wish(limits.joints());
+    for (int cycle = 0; cycle < 2000; ++cycle) {
+      for (int i = 0; i < wish.size(); ++i) wish[i] = unit(random) * limits.velocity[i];
+      if (cycle % 40 == 0) interpolator.jog(wish);
+      interpolator.tick(setpoint);
+    }
+  }
+  std::printf("20 jogs\n");
+}
+
+/// State to state, with and without position limits.
+void plan_at_random() {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  StateToState motion;
+  int planned = 0;
+  for (int k = 0; k < 20'000; ++k) {
+    std::array<AxisState, 3> start, end;
+    std::array<AxisLimits, 3> limits;
+    for (std::size_t i = 0; i < 3; ++i) {
+      start[i] = {unit(random), unit(random), unit(random), 0.0};
+      end[i] = {unit(random), 0.5 * unit(random), 0.5 * unit(random), 0.0};
+      limits[i] = AxisLimits::symmetric(1.0, 3.0, 10.0);
+      if (k % 2 == 0) limits[i].position_max = 1.1;
+      if (k % 3 == 0) limits[i].position_min = -1.1;
+    }
+    if (motion.plan(start, end, limits) != MoveStatus::kSolved) continue;
+    ++planned;
+    static_cast<void>(motion.at(0.5 * motion.duration()));
+  }
+  std::printf("%d motions from state to state\n", planned);
+}
+
 void run_the_loop() {
   for (unsigned seed = 0; seed < 20; ++seed) {
     std::mt19937 random(seed);
@@ -76,6 +120,8 @@ int main(int argc, char** argv) {
     return 0;
   }
   viapoint::tick_with_commands();
+  viapoint::jog_at_random();
+  viapoint::plan_at_random();
   viapoint::run_the_loop();
   return 0;
 }
