@@ -14,6 +14,7 @@
 #include "viapoint/profile/parabolic_blends.hpp"
 #include "viapoint/profile/pseudo_via_points.hpp"
 #include "viapoint/profile/quartic_transition.hpp"
+#include "viapoint/profile/s_curve.hpp"
 #include "viapoint/profile/trapezoid.hpp"
 #include "viapoint/profile/via_cubics.hpp"
 
@@ -140,15 +141,9 @@ void bind_point_to_point(py::module_& m) {
         return timed_together(laws, timing);
       },
       py::arg("laws"), py::arg("timing"), "Several laws on one clock.");
-  m.def(
-      "rest_to_rest",
-      [](double q0, double q1, double velocity, double acceleration, double jerk) {
-        JerkProfile profile = rest_to_rest(q1 - q0, velocity, acceleration, jerk);
-        profile.start.q = q0;
-        return AxisLaw(profile);
-      },
-      py::arg("q0"), py::arg("q1"), py::arg("velocity"), py::arg("acceleration"), py::arg("jerk"),
-      "The quickest move under limits on velocity, acceleration and jerk.");
+  m.def("rest_to_rest", &s_curve, py::arg("q0"), py::arg("q1"), py::arg("velocity"),
+        py::arg("acceleration"), py::arg("jerk"),
+        "The quickest move under limits on velocity, acceleration and jerk.");
 }
 
 void bind_through_points(py::module_& m) {

@@ -49,8 +49,9 @@ AxisLaw delayed(const AxisLaw& law, double seconds) {
   return AxisLaw(std::move(parts));
 }
 
-AxisLaw stretched(const AxisLaw& law, double factor) {
-  require_positive(factor, "factor");
+AxisLaw stretched(const AxisLaw& law, double end) {
+  require_positive(end - law.start(), "the stretched duration");
+  const double factor = (end - law.start()) / law.duration();
   std::vector<Polynomial> parts = law.parts();
   for (Polynomial& part : parts) {
     part.t0 = law.start() + factor * (part.t0 - law.start());
@@ -61,6 +62,7 @@ AxisLaw stretched(const AxisLaw& law, double factor) {
       power /= factor;
     }
   }
+  parts.back().t1 = end;  // and not what rounding makes of it
   return AxisLaw(std::move(parts));
 }
 

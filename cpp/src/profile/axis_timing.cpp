@@ -41,7 +41,7 @@ std::vector<AxisLaw> timed_together(std::span<const AxisLaw> laws, AxisTiming ti
     if (timing == AxisTiming::kSimultaneous || !quicker) {
       together.push_back(held(law, slowest.start(), slowest.end()));
     } else {
-      together.push_back(stretched(law, slowest.duration() / law.duration()));
+      together.push_back(stretched(law, slowest.end()));
     }
   }
   return together;

@@ -38,10 +38,10 @@ class AxisLaw {
 [[nodiscard]] AxisLaw resting(double q, double t0, double t1);
 /// The same course, `seconds` later (or, below 0, earlier). @throws MotionError(kBadArgument)
 [[nodiscard]] AxisLaw delayed(const AxisLaw& law, double seconds);
-/// The same way in `factor` times the time, from the same start: velocities fall by 1/factor,
-/// accelerations by its square, jerks by its cube. @throws MotionError(kBadArgument) unless
-/// factor > 0 and finite
-[[nodiscard]] AxisLaw stretched(const AxisLaw& law, double factor);
+/// The same way from the same start until `end`. In κ times the duration velocities are 1/κ of what
+/// they were, accelerations 1/κ², jerks 1/κ³. @throws MotionError(kBadArgument) unless end >
+/// start()
+[[nodiscard]] AxisLaw stretched(const AxisLaw& law, double end);
 /// The law with rest before and after it, so that it covers [t0, t1].
 /// @throws MotionError(kBadArgument) where it would have to rest but its velocity there is not 0
 [[nodiscard]] AxisLaw held(const AxisLaw& law, double t0, double t1);
