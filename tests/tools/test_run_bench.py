@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 import run_bench
-from benches import core, tables
+from benches import core, profiles, tables
 
 LINES = (
     '{"bench": "tick", "case": "full_speed", "ticks": 1000000, "p50_us": 0.51234, "checksum": 3}\n'
@@ -53,3 +53,39 @@ def test_an_unknown_subject_is_refused(capsys: pytest.CaptureFixture[str]):
     with pytest.raises(SystemExit):
         run_bench.main(["speed"])
     assert "no subject speed; there are tick, plan" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "arguments", [["tick", "--problems", "5"], ["profiles", "--problems", "0"]]
+)
+def test_a_number_of_problems_goes_with_profiles_alone(
+    arguments: list[str], capsys: pytest.CaptureFixture[str]
+):
+    with pytest.raises(SystemExit):
+        run_bench.main(arguments)
+    assert "--problems goes with profiles alone" in capsys.readouterr().err
+
+
+def test_the_run_by_the_million_passes_failures_on_and_lays_its_figures_out(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+):
+    program = tmp_path / "viapoint-profile-bench"
+    line = '{"bench": "profiles", "case": "verified", "problems": 12, "failures": 1}'
+    program.write_text(
+        f"#!/bin/sh\necho 'failed: seed 3: line'\necho '{line}'\nexit 1\n", encoding="utf-8"
+    )
+    program.chmod(0o755)
+    monkeypatch.setattr(run_bench, "machine", dict)
+    folder = str(tmp_path / "viapoint-bench")
+    assert run_bench.main(["profiles", "--problems", "12", "--program", folder]) == 1
+    shown = capsys.readouterr().out
+    assert "failed: seed 3: line" in shown
+    assert ["failures", "1"] in [line.split() for line in shown.splitlines()]
+
+
+def test_the_same_index_gives_the_same_problem_and_its_end_is_within_its_limits():
+    for index in range(50):
+        rows = profiles.problem("any state", 3, index)
+        assert (rows == profiles.problem("any state", 3, index)).all()
+        assert (abs(rows[:, 4]) <= rows[:, 7]).all()
+        assert (abs(rows[:, 5]) <= rows[:, 9]).all()
