@@ -52,7 +52,8 @@ class StateMotion:
     def at(self, t: ArrayLike) -> State:
         """Position and derivatives at one time or at many.
 
-        A joint that arrives before the others (``sync="none"``) goes on at its end velocity.
+        A joint that arrives before the others (``sync="none"``) goes on at its end velocity,
+        past its position limits too.
 
         Parameters
         ----------
