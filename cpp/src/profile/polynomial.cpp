@@ -1,6 +1,8 @@
 #include "viapoint/profile/polynomial.hpp"
 
 #include <cassert>
+#include <cmath>
+#include <ranges>
 
 #include "profile/argument_check.hpp"
 #include "profile/polynomial_roots.hpp"
@@ -39,11 +41,11 @@ AxisState Polynomial::at(double t) const {
   const double x = t - t0;
   // Horner's scheme, and its own by which it yields q̇, q̈/2 and q⃛/6 as well.
   double q = 0.0, first = 0.0, second = 0.0, third = 0.0;
-  for (auto k = c.rbegin(); k != c.rend(); ++k) {
+  for (const double coefficient : c | std::views::reverse) {
     third = third * x + second;
     second = second * x + first;
     first = first * x + q;
-    q = q * x + *k;
+    q = q * x + coefficient;
   }
   return {q, first, 2.0 * second, 6.0 * third};
 }
