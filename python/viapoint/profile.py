@@ -22,6 +22,7 @@ lines with parabolic blends, pseudo via points          `blended_lines`
 one parabolic blend of given width                      `parabolic_blend`
 quartic transitions                                     `quartic_transitions`
 Bézier, B-spline, B-spline through points               `bezier`, `b_spline`, `b_spline_through`
+from any state to any other under jerk limits           `state_to_state`
 ======================================================  =====================================
 """
 
