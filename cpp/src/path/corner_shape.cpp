@@ -13,7 +13,7 @@ constexpr int kCutBisections = 50;
 /// How closely a cut meets the chord asked for, as a share of it; never above.
 constexpr double kChordSlack = 1e-12;
 constexpr int kCutSamples = 64;
-constexpr int kBlendSamples = 16;
+constexpr int kBlendSamples = 8, kGoldenSteps = 10;
 /// A pairing that bounds the deviation this closely (times the least possible) needs no search.
 constexpr double kPairingSlack = 1.006;
 /// u* stays this far from the ends of the blend.
@@ -31,6 +31,12 @@ double value(const Polynomial6& polynomial, double u) {
   return sum;
 }
 
+/// q alone, at u in [0, 1].
+JointVector position(const JointPiece& piece, double u) {
+  const auto row = [&piece](int k) { return piece.coefficients.row(k).transpose(); };
+  return row(0) + u * (row(1) + u * (row(2) + u * (row(3) + u * (row(4) + u * row(5)))));
+}
+
 double golden_minimum(auto&& function, double low, double high) {
   // Golden section (Kiefer 1953).
   const double ratio = 0.5 * (std::sqrt(5.0) - 1.0);
@@ -38,7 +44,7 @@ double golden_minimum(auto&& function, double low, double high) {
   double b = low + ratio * (high - low);
   double at_a = function(a);
   double at_b = function(b);
-  for (int i = 0; i < 20; ++i) {
+  for (int i = 0; i < kGoldenSteps; ++i) {
     if (at_a < at_b) {
       high = b;
       b = a;
@@ -68,8 +74,18 @@ PathPoint CornerLegs::at_cut(Side side, double cut) const {
 JointVector CornerLegs::direction_before() const { return before_.at(before_.length()).q1; }
 JointVector CornerLegs::direction_after() const { return after_.at(0.0).q1; }
 
+bool CornerLegs::is_straight(Side side, double cut) const {
+  const JointPath& leg = side == kBefore ? before_ : after_;
+  const JointPiece& nearest = side == kBefore ? leg.pieces().back() : leg.pieces().front();
+  return cut <= nearest.length && !nearest.coefficients.bottomRows<4>().any();
+}
+
 double CornerLegs::chord(Side side, double cut) const {
-  return (at_cut(side, cut).q - corner_).norm();
+  const JointPath& leg = side == kBefore ? before_ : after_;
+  const double s = side == kBefore ? leg.length() - cut : cut;
+  const size_t index = leg.piece_at(s);
+  const JointPiece& piece = leg.pieces()[index];
+  return (position(piece, (s - leg.start_of(index)) / piece.length) - corner_).norm();
 }
 
 double CornerLegs::cut_of_chord(Side side, double wanted, double room) const {
@@ -155,7 +171,7 @@ bool CornerShape::valid(double shortest) const {
 
 double CornerShape::nearest_to_corner(const MotionSpace& space) const {
   const auto distance = [&](double u) {
-    return space.distance(blend_.at(u * blend_.length).q, legs_.corner());
+    return space.distance(position(blend_, u), legs_.corner());
   };
   double best = 0.5;
   double least = std::numeric_limits<double>::infinity();
@@ -213,7 +229,11 @@ double CornerShape::bound_radius(const MotionSpace& space, double resolution,
 double CornerShape::bound_deviation_from_legs(const MotionSpace& space, double resolution,
                                               double share) const {
   const double u_star = nearest_to_corner(space);
-  const double least = space.distance(blend_.at(u_star * blend_.length).q, legs_.corner());
+  const double least = space.distance(position(blend_, u_star), legs_.corner());
+  // Between straight legs the largest distance of the pairs is that of u*, see the header.
+  const bool straight = legs_.is_straight(CornerLegs::kBefore, cut_before_) &&
+                        legs_.is_straight(CornerLegs::kAfter, cut_after_);
+  if (space.is_joint_space() && straight) return least;
   const PieceMotion blend(blend_);
   // By the pairing of the header: tight wherever the legs are nearly straight in this space. What
   // is far above the least that is possible is left to the dearer search.
@@ -236,7 +256,7 @@ double CornerShape::bound_deviation_from_legs(const MotionSpace& space, double r
 }
 
 double CornerShape::distance_from_corner(const MotionSpace& space) const {
-  return space.distance(blend_.at(nearest_to_corner(space) * blend_.length).q, legs_.corner());
+  return space.distance(position(blend_, nearest_to_corner(space)), legs_.corner());
 }
 
 }  // namespace viapoint

@@ -36,6 +36,8 @@ class CornerLegs {
   [[nodiscard]] const JointVector& corner() const { return corner_; }
   [[nodiscard]] JointVector direction_before() const;
   [[nodiscard]] JointVector direction_after() const;
+  /// True where the leg is a straight line in joint space from the corner to the cut.
+  [[nodiscard]] bool is_straight(Side side, double cut) const;
   /// Joint distance [2-norm] between the corner and the cut.
   [[nodiscard]] double chord(Side side, double cut) const;
   /// The cut with this chord, or `room` where the chord there is shorter.

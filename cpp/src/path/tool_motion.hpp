@@ -70,6 +70,8 @@ class MotionSpace {
   MotionSpace() = default;
   /// At the tool point. @param travel largest |q_i| that occurs, (n,); counts for prismatic joints
   MotionSpace(const ForwardKinematics& arm, const JointVector& travel);
+  /// True for the joints' own space.
+  [[nodiscard]] bool is_joint_space() const { return arm_ == nullptr; }
 
   /// Distance of two joint positions [rad] or of the tool points [m].
   [[nodiscard]] double distance(const JointVector& a, const JointVector& b) const;

@@ -1,6 +1,7 @@
 #include "planning/corner_fit.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "planning/tool_limits.hpp"
@@ -28,6 +29,16 @@ bool keeps_limits(const JointPiece& blend, const JointLimits& limits) {
   return !piece_position_violation(blend, limits);
 }
 
+/// Length of a joint line in joint space; nothing for any other leg and for one with speed wishes.
+std::optional<double> free_length(const JointPath& leg) {
+  const JointPiece& piece = leg.pieces().front();
+  const bool line = leg.pieces().size() == 1 && piece.kind == PieceKind::kJointLine;
+  if (!line || std::isfinite(piece.rate_limit) || std::isfinite(piece.rate_change_limit)) {
+    return std::nullopt;
+  }
+  return piece.coefficients.row(1).norm();
+}
+
 }  // namespace
 
 Corner fit_corner(const RobotModel& robot, const Leg& before, const JointPath& tail,
@@ -49,6 +60,16 @@ Corner fit_corner(const RobotModel& robot, const Leg& before, const JointPath& t
   corner.possible = false;
   corner.reason = "every corner within the zone leaves the joint limits";
   return corner;
+}
+
+bool surely_pays(const Corner& corner, const JointPath& tail, const JointPath& after) {
+  constexpr double kLeastCut = 0.05;
+  const std::optional<double> before_length = free_length(tail), after_length = free_length(after);
+  if (!before_length || !after_length) return false;
+  if (tail.pieces().front().scale != after.pieces().front().scale) return false;
+  const double cut_before = *before_length * corner.cut_before / tail.length();
+  const double cut_after = *after_length * corner.cut_after / after.length();
+  return std::min(cut_before, cut_after) >= kLeastCut * std::max(*before_length, *after_length);
 }
 
 }  // namespace viapoint::planning

