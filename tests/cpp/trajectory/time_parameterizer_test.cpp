@@ -228,6 +228,40 @@ TEST(TimeParameterizer, PassesCornersInLessThanFourFifthsOfStopping) {
   }
 }
 
+TEST(TimeParameterizer, DoesNotCareForTheScaleOfSThatPiecesComeIn) {
+  const JointLimits limits = arm_limits();
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    SCOPED_TRACE(::testing::Message() << "seed " << seed);
+    Random random(seed);
+    const JointPath plain = cornered_path(random_walk(random, 6, 6, 0.1, 0.6), 0.02);
+    JointPath scaled;
+    double scale = 1.0;
+    for (JointPiece piece : plain.pieces()) {
+      // As far as a thousand unequal corners get it.
+      scale *= decades(random, 1e-6, 1e2);
+      piece.length *= scale;
+      scaled.append(piece);
+    }
+    const auto pieces = parameterize(scaled, limits);
+    expect_sound(plain, limits, pieces, 20);
+    expect_certified(pieces, limits);
+    EXPECT_NEAR(duration_of(pieces) / duration_of(parameterize(plain, limits)), 1.0, 1e-6);
+  }
+}
+
+TEST(TimeParameterizer, IsAboutAsQuickAsStoppingWhereCornersAreTiny) {
+  for (std::uint64_t seed = 0; seed < 500; ++seed) {
+    SCOPED_TRACE(::testing::Message() << "seed " << seed);
+    Random random(seed);
+    const int joints = 2 + static_cast<int>(seed % 6);
+    const auto points = random_walk(random, joints, 2, 1e-2, 5.0);
+    const JointLimits limits = random_limits(random, joints, 1.0);
+    const auto pieces = parameterize(cornered_path(points, decades(random, 1e-5, 1e-2)), limits);
+    // A corner costs a little by itself, and two to three per cent are the optimiser's.
+    EXPECT_LE(duration_of(pieces), 1.15 * stopping_time(points, limits));
+  }
+}
+
 TEST(TimeParameterizer, IsAboutAsQuickAsTheSevenPhasesOnALineTimedAsACurve) {
   // Pieces that differ in scale by a hair, so that the general method runs.
   const JointLimits limits = arm_limits();
