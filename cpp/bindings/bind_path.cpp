@@ -1,8 +1,12 @@
-// Straight-line insertion: the knots alone, with their proven bounds, for study and comparison.
+// Knots of straight lines with their proven bounds, for study and comparison, and fits of curves.
+#include <pybind11/functional.h>
+
 #include <algorithm>
+#include <functional>
 
 #include "bindings.hpp"
 #include "viapoint/kinematics/inverse_kinematics.hpp"
+#include "viapoint/path/curve_fit.hpp"
 #include "viapoint/path/insertion.hpp"
 
 namespace viapoint::python {
@@ -63,9 +67,51 @@ KnotsHandle insert_knots(const RobotHandle& handle, const Eigen::Matrix4d& pose0
   return certified_knots(robot, from, to, start, position, angle);
 }
 
+py::array_t<double> poses_of(const CurveFit& fit) {
+  py::array_t<double> poses({fit.poses.size(), size_t{4}, size_t{4}});
+  auto view = poses.mutable_unchecked<3>();
+  for (py::ssize_t k = 0; k < view.shape(0); ++k) {
+    const Eigen::Matrix4d matrix = fit.poses[static_cast<size_t>(k)].matrix();
+    for (int row = 0; row < 4; ++row) {
+      for (int column = 0; column < 4; ++column) view(k, row, column) = matrix(row, column);
+    }
+  }
+  return poses;
+}
+
+void bind_fit(py::module_& m) {
+  py::class_<CurveFit>(m, "PoseFit", "Poses on a curve, and how near the spline through them is.")
+      .def_property_readonly("poses", &poses_of, "(k, 4, 4)")
+      .def_readonly("at", &CurveFit::at, "Parameter of each pose.")
+      .def_property_readonly("deviation", [](const CurveFit& f) { return f.deviation.position; })
+      .def_property_readonly("angle_deviation", [](const CurveFit& f) { return f.deviation.angle; })
+      .def_readonly("looked_at", &CurveFit::looked_at);
+  m.def(
+      "fit_function",
+      [](const std::function<Eigen::Matrix4d(double)>& gamma, double from, double to,
+         double tolerance, double angle_tolerance) {
+        return fit_curve([&](double at) { return pose_from(gamma(at)); }, from, to,
+                         {tolerance, angle_tolerance});
+      },
+      py::arg("gamma"), py::kw_only(), py::arg("from_"), py::arg("to"), py::arg("tolerance"),
+      py::arg("angle_tolerance"));
+  m.def(
+      "fit_samples",
+      [](const std::vector<Eigen::Matrix4d>& samples, const std::vector<double>& at,
+         double tolerance, double angle_tolerance) {
+        std::vector<Pose> poses;
+        poses.reserve(samples.size());
+        for (const Eigen::Matrix4d& sample : samples) poses.push_back(pose_from(sample));
+        return fit_curve(poses, at, {tolerance, angle_tolerance});
+      },
+      py::arg("samples"), py::arg("at"), py::kw_only(), py::arg("tolerance"),
+      py::arg("angle_tolerance"), py::call_guard<py::gil_scoped_release>());
+}
+
 }  // namespace
 
 void bind_path(py::module_& m) {
+  bind_fit(m);
   py::class_<KnotsHandle>(m, "Knots", "Knots along a straight tool line, with a proven bound.")
       .def_property_readonly(
           "q", [](const KnotsHandle& k) { return rows_of(k.knots); }, "(k, n) [rad or m]")

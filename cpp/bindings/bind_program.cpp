@@ -1,4 +1,5 @@
 // Motion programs: steps are appended from Python, which checks the arguments first.
+#include <optional>
 #include <tuple>
 
 #include "bindings.hpp"
@@ -19,8 +20,20 @@ Orientation orientation_from(const std::string& name) {
   if (name == "least") return Orientation::kLeast;
   if (name == "wrist") return Orientation::kWrist;
   if (name == "fixed") return Orientation::kFixed;
+  if (name == "tangent") return Orientation::kTangent;
+  if (name == "through") return Orientation::kThrough;
+  if (name == "free") return Orientation::kFree;
   throw MotionError(ErrorCode::kBadArgument, "\"" + name + "\" is no way of orientation.",
-                    {"Use \"least\", \"wrist\" or \"fixed\"."});
+                    {R"(Use "least", "wrist", "fixed", "tangent", "through" or "free".)"});
+}
+
+SplineKind spline_kind_from(const std::string& name) {
+  if (name == "cubic") return SplineKind::kCubic;
+  if (name == "quintic") return SplineKind::kQuintic;
+  if (name == "bezier") return SplineKind::kBezier;
+  if (name == "b_spline") return SplineKind::kBSpline;
+  throw MotionError(ErrorCode::kBadArgument, "\"" + name + "\" is no kind of spline.",
+                    {R"(Use "cubic", "quintic", "bezier" or "b_spline".)"});
 }
 
 TimedSpace space_from(const std::string& name) {
@@ -49,6 +62,16 @@ std::vector<TargetRow> targets_of(const MotionProgram& program) {
       rows.push_back(row_of(step, ptp->target));
     } else if (const auto* lin = std::get_if<LinMove>(&what)) {
       rows.push_back(row_of(step, lin->target));
+    } else if (const auto* circ = std::get_if<CircMove>(&what)) {
+      rows.push_back(row_of(step, circ->via));
+      rows.push_back(row_of(step, circ->target));
+    } else if (const auto* spline = std::get_if<SplineMove>(&what)) {
+      // The poses of a fit are many, and nobody gave them.
+      const size_t first =
+          spline->at.empty() || spline->points.empty() ? 0 : spline->points.size() - 1;
+      for (size_t k = first; k < spline->points.size(); ++k) {
+        rows.push_back(row_of(step, spline->points[k]));
+      }
     } else if (const auto* timed = std::get_if<TimedMove>(&what)) {
       for (const TimedPoint& point : timed->points) rows.push_back(row_of(step, point.target));
     }
@@ -98,7 +121,7 @@ void bind_program(py::module_& m) {
             program.tolerance = {position, angle};
           },
           py::arg("position"), py::arg("angle"),
-          "How far the tool may be from its straight lines [m, rad].")
+          "How far the tool may be from its lines and curves [m, rad].")
       .def(py::init([](const RobotHandle& robot, const Eigen::VectorXd& start) {
              return MotionProgram{robot.robot->name(),
                                   robot.robot->fingerprint(),
@@ -128,6 +151,44 @@ void bind_program(py::module_& m) {
           },
           py::arg("target"), py::arg("orientation"), py::arg("options"), py::arg("file"),
           py::arg("line"))
+      .def(
+          "add_movec",
+          [](MotionProgram& p, const TargetHandle& via, const TargetHandle& target,
+             const std::string& orientation, const MoveOptions& options, std::string file,
+             int line) {
+            append(p, CircMove{via.target, target.target, orientation_from(orientation)}, options,
+                   std::move(file), line);
+          },
+          py::arg("via"), py::arg("target"), py::arg("orientation"), py::arg("options"),
+          py::arg("file"), py::arg("line"))
+      .def(
+          "add_turn",
+          [](MotionProgram& p, const std::optional<Eigen::Vector3d>& center,
+             const std::optional<Eigen::Vector3d>& axis, double angle, double pitch,
+             const std::string& orientation, const MoveOptions& options, std::string file,
+             int line) {
+            append(p, TurnMove{center, axis, angle, pitch, orientation_from(orientation)}, options,
+                   std::move(file), line);
+          },
+          py::arg("center"), py::arg("axis"), py::arg("angle"), py::arg("pitch"),
+          py::arg("orientation"), py::arg("options"), py::arg("file"), py::arg("line"))
+      .def(
+          "add_spline",
+          [](MotionProgram& p, const std::vector<TargetHandle>& points, const std::string& kind,
+             bool of_joints, const std::string& orientation, const std::vector<double>& at,
+             const std::optional<TargetHandle>& start, const MoveOptions& options, std::string file,
+             int line) {
+            SplineMove move;
+            for (const TargetHandle& point : points) move.points.push_back(point.target);
+            move.kind = spline_kind_from(kind);
+            move.space = of_joints ? SplineSpace::kJoint : SplineSpace::kTool;
+            move.orientation = orientation_from(orientation);
+            move.at = at;
+            if (start) move.start = start->target;
+            append(p, std::move(move), options, std::move(file), line);
+          },
+          py::arg("points"), py::arg("kind"), py::arg("of_joints"), py::arg("orientation"),
+          py::arg("at"), py::arg("start"), py::arg("options"), py::arg("file"), py::arg("line"))
       .def(
           "add_wait",
           [](MotionProgram& p, double seconds, std::string file, int line) {

@@ -27,6 +27,7 @@ from ._core import (
     Singularity,
     __version__,
 )
+from ._curve_fit import CurveFit, fit_curve
 from ._job import Job, RunReport
 from ._knots import insert_knots
 from ._motion import Motion
@@ -45,6 +46,7 @@ __all__ = [
     "Arm",
     "Certificate",
     "Corner",
+    "CurveFit",
     "Extremum",
     "Job",
     "JointLimits",
@@ -66,6 +68,7 @@ __all__ = [
     "deg",
     "deviation",
     "errors",
+    "fit_curve",
     "insert_knots",
     "joint_deviation",
     "joint_robot",

@@ -8,28 +8,19 @@ from pathlib import Path
 from typing import Literal
 
 from . import _core, _session
-from ._arguments import (
-    NOTEWORTHY_CORRECTION,
-    ArrayLike,
-    Vector,
-    choice,
-    integer,
-    number,
-    numbers_of,
-    pose,
-    vector,
-)
+from ._arguments import ArrayLike, choice, integer, number
+from ._curve_steps import CurveSteps
 from ._motion import Motion
 from ._report import Report
-from ._robot import Robot, load_robot, require_robot
+from ._robot import Robot, load_robot
 from ._source import caller
-from ._zone import ZoneLike, zone_of
+from ._zone import ZoneLike
 from .errors import BadArgumentError, BadProgramError, MotionError
 
 OUTPUTS = 64
 
 
-class Program:
+class Program(CurveSteps):
     """A list of moves, waits and outputs for one robot.
 
     The builders return the program itself, so that they can be chained. They check types, shapes
@@ -51,7 +42,7 @@ class Program:
     name : str
         For people and for the names of files.
     position_tolerance, angle_tolerance : float
-        Straight lines stay proven within this [m], [rad].
+        Lines and curves stay proven within this [m], [rad].
 
     Raises
     ------
@@ -72,11 +63,10 @@ class Program:
         position_tolerance: float = _core.POSITION_TOLERANCE,
         angle_tolerance: float = _core.ANGLE_TOLERANCE,
     ) -> None:
-        self.robot = require_robot(robot)
+        super().__init__(
+            robot, start=start, speed=speed, acceleration=acceleration, scale=scale, zone=zone
+        )
         self.name = name
-        self._defaults = (speed, acceleration, scale, zone_of(zone))
-        self._options()  # refuses a bad default here, where it was given
-        self._core = _core.MotionProgram(robot._core, vector(start, "start", robot.joints))
         self._core.set_tolerance(
             number(position_tolerance, "position_tolerance", "m", above=0.0),
             number(angle_tolerance, "angle_tolerance", "rad", above=0.0),
@@ -85,15 +75,6 @@ class Program:
     def __repr__(self) -> str:
         """Name, robot and number of steps."""
         return f"<Program {self.name!r} for {self.robot.name}, {len(self)} steps>"
-
-    def __len__(self) -> int:
-        """Count the steps."""
-        return len(self._core)
-
-    @property
-    def start(self) -> Vector:
-        """Joints where the program begins, (n,) [rad or m]."""
-        return self._core.start
 
     def movej(
         self,
@@ -329,52 +310,6 @@ class Program:
         program._core = core
         return program
 
-    def _options(
-        self,
-        *,
-        speed: float | None = None,
-        acceleration: float | None = None,
-        scale: float | None = None,
-        zone: ZoneLike | None = None,
-    ) -> _core.MoveOptions:
-        base_speed, base_acceleration, base_scale, base_zone = self._defaults
-        zone = base_zone if zone is None else zone_of(zone)
-        return _core.MoveOptions(
-            speed=_positive(base_speed if speed is None else speed, "speed", "m/s"),
-            acceleration=_positive(
-                base_acceleration if acceleration is None else acceleration, "acceleration", "m/s²"
-            ),
-            scale=_positive(base_scale if scale is None else scale, "scale", "", most=1.0),
-            zone=zone.kind,
-            size=zone.size,
-        )
-
-    def _target(
-        self,
-        target: ArrayLike | None,
-        position: ArrayLike | None,
-        name: str = "target",
-    ) -> _core.Target:
-        if position is not None:
-            if target is not None:
-                raise BadArgumentError(f"Both {name} and position are given; give one of them.")
-            return _core.Target.position(vector(position, "position", 3, "x, y, z"))
-        if target is None:
-            raise BadArgumentError(f"Neither {name} nor position is given; give one of them.")
-        array = numbers_of(target, name)
-        if array.ndim == 2:
-            matrix, correction = pose(array, name)
-            # The planner reports the correction as a warning, with the script's line.
-            return _core.Target.pose(
-                matrix, correction if correction > NOTEWORTHY_CORRECTION else 0.0
-            )
-        if array.shape != (self.robot.joints,):
-            raise BadArgumentError(
-                f"{name} has the shape {array.shape}; it must be ({self.robot.joints},): joints, "
-                "or (4, 4): a pose."
-            )
-        return _core.Target.joints(array)
-
 
 def motion_of(program: Program | Motion) -> Motion:
     """Return the motion itself, or that of a program.
@@ -391,9 +326,3 @@ def motion_of(program: Program | Motion) -> Motion:
     if isinstance(program, Program):
         return program.plan()
     raise BadArgumentError(f"program is {program!r}; it must be a Program or a Motion.")
-
-
-def _positive(
-    value: float | None, name: str, unit: str, most: float = float("inf")
-) -> float | None:
-    return None if value is None else number(value, name, unit, above=0.0, most=most)

@@ -11,6 +11,8 @@ import pytest
 EXAMPLES = Path(__file__).parents[2] / "python" / "examples"
 
 SAYS = {
+    "gluing_contour.py": ["the bead is proven within", "zone of move"],
+    "own_curve.py": ["of the curve at", "finished after"],
     "override_and_stop.py": ["paused", "finished", "stopped after"],
     "puma560_abc.py": [
         "joint_limit",

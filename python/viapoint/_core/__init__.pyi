@@ -28,6 +28,7 @@ __all__: list[str] = [
     "MoveOptions",
     "POSITION_TOLERANCE",
     "PlannedMotion",
+    "PoseFit",
     "Problem",
     "RobotModel",
     "RunReport",
@@ -38,6 +39,8 @@ __all__: list[str] = [
     "check",
     "checked_pose",
     "error_codes",
+    "fit_function",
+    "fit_samples",
     "insert_knots",
     "joint_robot",
     "load_program",
@@ -299,6 +302,27 @@ class RobotModel:
     @property
     def title(self) -> str: ...
 
+class PoseFit:
+    """
+    Poses on a curve, and how near the spline through them is.
+    """
+    @property
+    def angle_deviation(self) -> float: ...
+    @property
+    def at(self) -> list[float]:
+        """
+        Parameter of each pose.
+        """
+    @property
+    def deviation(self) -> float: ...
+    @property
+    def looked_at(self) -> int: ...
+    @property
+    def poses(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (k, 4, 4)
+        """
+
 class Knots:
     """
     Knots along a straight tool line, with a proven bound.
@@ -363,6 +387,15 @@ class MotionProgram:
         start: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
     ) -> None: ...
     def __len__(self) -> int: ...
+    def add_movec(
+        self,
+        via: Target,
+        target: Target,
+        orientation: str,
+        options: MoveOptions,
+        file: str,
+        line: typing.SupportsInt | typing.SupportsIndex,
+    ) -> None: ...
     def add_movej(
         self,
         target: Target,
@@ -385,6 +418,18 @@ class MotionProgram:
         file: str,
         line: typing.SupportsInt | typing.SupportsIndex,
     ) -> None: ...
+    def add_spline(
+        self,
+        points: collections.abc.Sequence[Target],
+        kind: str,
+        of_joints: bool,
+        orientation: str,
+        at: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex],
+        start: Target | None,
+        options: MoveOptions,
+        file: str,
+        line: typing.SupportsInt | typing.SupportsIndex,
+    ) -> None: ...
     def add_timed(
         self,
         points: collections.abc.Sequence[
@@ -392,6 +437,17 @@ class MotionProgram:
         ],
         t_acc: typing.SupportsFloat | typing.SupportsIndex,
         space: str,
+        file: str,
+        line: typing.SupportsInt | typing.SupportsIndex,
+    ) -> None: ...
+    def add_turn(
+        self,
+        center: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"] | None,
+        axis: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"] | None,
+        angle: typing.SupportsFloat | typing.SupportsIndex,
+        pitch: typing.SupportsFloat | typing.SupportsIndex,
+        orientation: str,
+        options: MoveOptions,
         file: str,
         line: typing.SupportsInt | typing.SupportsIndex,
     ) -> None: ...
@@ -408,7 +464,7 @@ class MotionProgram:
         angle: typing.SupportsFloat | typing.SupportsIndex,
     ) -> None:
         """
-        How far the tool may be from its straight lines [m, rad].
+        How far the tool may be from its lines and curves [m, rad].
         """
     def targets(
         self,
@@ -750,6 +806,25 @@ def error_codes() -> list[str]:
     Every error code's name, in the order of the C++ enum.
     """
 
+def fit_function(
+    gamma: collections.abc.Callable[
+        [float], typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[4, 4]"]
+    ],
+    *,
+    from_: typing.SupportsFloat | typing.SupportsIndex,
+    to: typing.SupportsFloat | typing.SupportsIndex,
+    tolerance: typing.SupportsFloat | typing.SupportsIndex,
+    angle_tolerance: typing.SupportsFloat | typing.SupportsIndex,
+) -> PoseFit: ...
+def fit_samples(
+    samples: collections.abc.Sequence[
+        typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[4, 4]"]
+    ],
+    at: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex],
+    *,
+    tolerance: typing.SupportsFloat | typing.SupportsIndex,
+    angle_tolerance: typing.SupportsFloat | typing.SupportsIndex,
+) -> PoseFit: ...
 def insert_knots(
     robot: RobotModel,
     pose0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[4, 4]"],

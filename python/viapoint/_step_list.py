@@ -1,0 +1,97 @@
+"""What every program is: a robot, where it starts, its defaults, and the steps so far."""
+
+from __future__ import annotations
+
+from . import _core
+from ._arguments import (
+    NOTEWORTHY_CORRECTION,
+    ArrayLike,
+    Vector,
+    number,
+    numbers_of,
+    pose,
+    vector,
+)
+from ._robot import Robot, require_robot
+from ._zone import ZoneLike, zone_of
+from .errors import BadArgumentError
+
+
+class StepList:
+    """Steps for one robot, and the defaults of their options."""
+
+    def __init__(
+        self,
+        robot: Robot,
+        *,
+        start: ArrayLike,
+        speed: float | None,
+        acceleration: float | None,
+        scale: float | None,
+        zone: ZoneLike,
+    ) -> None:
+        self.robot = require_robot(robot)
+        self._defaults = (speed, acceleration, scale, zone_of(zone))
+        self._options()  # refuses a bad default here, where it was given
+        self._core = _core.MotionProgram(robot._core, vector(start, "start", robot.joints))
+
+    def __len__(self) -> int:
+        """Count the steps."""
+        return len(self._core)
+
+    @property
+    def start(self) -> Vector:
+        """Joints where the program begins, (n,) [rad or m]."""
+        return self._core.start
+
+    def _options(
+        self,
+        *,
+        speed: float | None = None,
+        acceleration: float | None = None,
+        scale: float | None = None,
+        zone: ZoneLike | None = None,
+    ) -> _core.MoveOptions:
+        base_speed, base_acceleration, base_scale, base_zone = self._defaults
+        zone = base_zone if zone is None else zone_of(zone)
+        return _core.MoveOptions(
+            speed=_positive(base_speed if speed is None else speed, "speed", "m/s"),
+            acceleration=_positive(
+                base_acceleration if acceleration is None else acceleration, "acceleration", "m/s²"
+            ),
+            scale=_positive(base_scale if scale is None else scale, "scale", "", most=1.0),
+            zone=zone.kind,
+            size=zone.size,
+        )
+
+    def _target(
+        self,
+        target: ArrayLike | None,
+        position: ArrayLike | None,
+        name: str = "target",
+    ) -> _core.Target:
+        if position is not None:
+            if target is not None:
+                raise BadArgumentError(f"Both {name} and position are given; give one of them.")
+            return _core.Target.position(vector(position, "position", 3, "x, y, z"))
+        if target is None:
+            raise BadArgumentError(f"Neither {name} nor position is given; give one of them.")
+        array = numbers_of(target, name)
+        if array.ndim == 2:
+            matrix, correction = pose(array, name)
+            # The planner reports the correction as a warning, with the script's line.
+            return _core.Target.pose(
+                matrix, correction if correction > NOTEWORTHY_CORRECTION else 0.0
+            )
+        if array.shape != (self.robot.joints,):
+            raise BadArgumentError(
+                f"{name} has the shape {array.shape}; it must be ({self.robot.joints},): joints, "
+                "or (4, 4): a pose."
+            )
+        return _core.Target.joints(array)
+
+
+def _positive(
+    value: float | None, name: str, unit: str, most: float = float("inf")
+) -> float | None:
+    return None if value is None else number(value, name, unit, above=0.0, most=most)
