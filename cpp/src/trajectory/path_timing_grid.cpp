@@ -26,7 +26,7 @@ std::span<const double> places(const Stretch& stretch) {
 /// spent where acceleration turns over.
 constexpr double kGrowth = 0.5;
 /// Length of a cell over w.
-constexpr double kCellShare = 0.9;
+constexpr double kCellShare = 0.8;
 
 /// What the limits allow at one place, by the simplest of arguments.
 struct Sample {
