@@ -1,6 +1,5 @@
-// Robots: descriptions, limits, forward and inverse kinematics.
+// Robots: descriptions, limits and forward kinematics.
 #include "bindings.hpp"
-#include "viapoint/kinematics/inverse_kinematics.hpp"
 #include "viapoint/kinematics/robot_description.hpp"
 
 namespace viapoint::python {
@@ -91,11 +90,6 @@ std::pair<Array, Array> tool_rates(const RobotHandle& self, const Array& q, cons
   return {std::move(twist), std::move(rate)};
 }
 
-const InverseKinematics& inverse_of(const RobotHandle& self) {
-  require_kinematics(*self.robot);
-  return self.robot->inverse();
-}
-
 void bind_limits(py::module_& m) {
   py::class_<JointLimits>(m, "JointLimits", R"(What each joint may do [SI, rad].
 
@@ -137,57 +131,6 @@ coupling_lower <= coupling @ q <= coupling_upper. Arrays are copies: a robot's l
         return "<Singularity " + s.name + ", distance " + std::to_string(s.distance) +
                ", manipulability " + std::to_string(s.manipulability) + ">";
       });
-}
-
-void bind_inverse(py::class_<RobotHandle>& robot) {
-  robot
-      .def_property_readonly(
-          "ik_family", [](const RobotHandle& r) { return inverse_of(r).family(); },
-          "Which inverse-kinematics solver serves this arm, and why.")
-      .def(
-          "ik_all",
-          [](const RobotHandle& r, const Eigen::Matrix4d& pose) {
-            const Pose target = pose_from(pose);
-            const InverseKinematics& inverse = inverse_of(r);
-            std::vector<JointVector> all;
-            {
-              const py::gil_scoped_release release;
-              all = inverse.solve_all(target);
-            }
-            return rows_of(all);
-          },
-          py::arg("pose"))
-      .def(
-          "ik_all_position",
-          [](const RobotHandle& r, const Eigen::Vector3d& position) {
-            const InverseKinematics& inverse = inverse_of(r);
-            std::vector<JointVector> all;
-            {
-              const py::gil_scoped_release release;
-              all = inverse.solve_all(position);
-            }
-            return rows_of(all);
-          },
-          py::arg("position"))
-      .def(
-          "ik_near",
-          [](const RobotHandle& r, const Eigen::Matrix4d& pose, const Vector& near) {
-            const Pose target = pose_from(pose);
-            const JointVector reference = joints_from(near, "near", r.robot->joints());
-            const InverseKinematics& inverse = inverse_of(r);
-            const py::gil_scoped_release release;
-            return Vector(inverse.solve_near(target, reference));
-          },
-          py::arg("pose"), py::arg("near"))
-      .def(
-          "ik_near_position",
-          [](const RobotHandle& r, const Eigen::Vector3d& position, const Vector& near) {
-            const JointVector reference = joints_from(near, "near", r.robot->joints());
-            const InverseKinematics& inverse = inverse_of(r);
-            const py::gil_scoped_release release;
-            return Vector(inverse.solve_near(position, reference));
-          },
-          py::arg("position"), py::arg("near"));
 }
 
 }  // namespace
@@ -289,7 +232,7 @@ void bind_robot(py::module_& m) {
             return r.robot->singularity(joints_from(q, "q", r.robot->joints()));
           },
           py::arg("q"));
-  bind_inverse(robot);
+  bind_kinematics(m, robot);
   m.def(
       "load_robot",
       [](const std::string& name_or_path) {

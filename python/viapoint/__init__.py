@@ -19,7 +19,9 @@ from . import errors, profile
 from ._arm import Arm, connect
 from ._core import (
     Certificate,
+    Configuration,
     Corner,
+    Dexterity,
     Extremum,
     JointLimits,
     Knots,
@@ -45,8 +47,10 @@ from .errors import MotionError
 __all__ = [
     "Arm",
     "Certificate",
+    "Configuration",
     "Corner",
     "CurveFit",
+    "Dexterity",
     "Extremum",
     "Job",
     "JointLimits",

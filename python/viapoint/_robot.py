@@ -3,33 +3,29 @@
 from __future__ import annotations
 
 import os
-import warnings
 from typing import cast
 
 import numpy as np
 
 from . import _core
-from ._arguments import NOTEWORTHY_CORRECTION, ArrayLike, Vector, numbers_of, pose, vector
+from ._arguments import ArrayLike, Vector, numbers_of, vector
+from ._kinematics import Kinematics
 from .errors import (
     BadArgumentError,
     CouplingLimitError,
     JointLimitError,
-    PoseCorrectedWarning,
 )
 
 _SLACK = 1e-9
 """Joints this far outside a limit [rad or m] are at it, but for rounding."""
 
 
-class Robot:
+class Robot(Kinematics):
     """An arm: chain, limits, forward and inverse kinematics. Immutable.
 
     Made by `load_robot` and `joint_robot`. Angles are in radians, lengths in metres; poses are
     ``pose_base_tool``, (4, 4). Threads: any, at once.
     """
-
-    def __init__(self, core: _core.RobotModel) -> None:
-        self._core = core
 
     def __repr__(self) -> str:
         """Name and number of joints."""
@@ -84,125 +80,6 @@ class Robot:
     def fingerprint(self) -> str:
         """Hash of chain, limits and tool: two robots with the same one move alike."""
         return self._core.fingerprint
-
-    @property
-    def ik_family(self) -> str:
-        """Which inverse-kinematics solver serves this arm, and why."""
-        return self._core.ik_family
-
-    def fk(self, q: ArrayLike) -> Vector:
-        """Pose of the tool in the base frame.
-
-        Parameters
-        ----------
-        q : array_like, (n,) or (k, n)
-            Joints [rad or m].
-
-        Returns
-        -------
-        ndarray, (4, 4) or (k, 4, 4)
-            pose_base_tool [m].
-
-        Raises
-        ------
-        BadArgumentError
-            Another shape, or values that are not finite.
-        UncontrolledError
-            The robot has no kinematics.
-        """
-        joints = numbers_of(q, "q")
-        if joints.ndim == 2 and joints.shape[1] == self.joints:
-            return self._core.fk_batch(joints)
-        return self._core.fk(vector(joints, "q", self.joints))
-
-    def ik(
-        self,
-        pose: ArrayLike | None = None,
-        *,
-        position: ArrayLike | None = None,
-        near: ArrayLike | None = None,
-    ) -> Vector:
-        """Joints of the branch within the limits that is nearest to `near`.
-
-        Parameters
-        ----------
-        pose : array_like, (4, 4), optional
-            pose_base_tool [m]. Either this or `position`.
-        position : array_like, (3,), optional
-            Tool position in the base frame [m], where the orientation does not count.
-        near : array_like, (n,), optional
-            Reference joints [rad or m]; only a reference, may lie outside the limits. Default:
-            all zero.
-
-        Returns
-        -------
-        ndarray, (n,)
-            Joints [rad or m], always within the limits.
-
-        Raises
-        ------
-        NotARotationError, UnreachableError, OutsideLimitsError, UncontrolledError, BadArgumentError
-            Each says how far, which joint, or which coordinate.
-
-        Warns
-        -----
-        PoseCorrectedWarning
-            The pose was a rotation only up to rounding and was projected.
-        """
-        reference = np.zeros(self.joints) if near is None else vector(near, "near", self.joints)
-        if position is not None:
-            _only_one(pose)
-            point = vector(position, "position", 3, "x, y, z")
-            return self._core.ik_near_position(point, reference)
-        return self._core.ik_near(_checked(pose), reference)
-
-    def ik_all(self, pose: ArrayLike | None = None, *, position: ArrayLike | None = None) -> Vector:
-        """Every branch within the limits, and no other, nearest to zero first.
-
-        Parameters
-        ----------
-        pose : array_like, (4, 4), optional
-            pose_base_tool [m]. Either this or `position`.
-        position : array_like, (3,), optional
-            Tool position in the base frame [m], where the orientation does not count.
-
-        Returns
-        -------
-        ndarray, (k, n)
-            Joints [rad or m], one branch a row.
-
-        Raises
-        ------
-        NotARotationError, UnreachableError, OutsideLimitsError, UncontrolledError, BadArgumentError
-            As for `ik`.
-        """
-        if position is not None:
-            _only_one(pose)
-            return self._core.ik_all_position(vector(position, "position", 3, "x, y, z"))
-        return self._core.ik_all(_checked(pose))
-
-    def jacobian(self, q: ArrayLike) -> Vector:
-        """Geometric Jacobian at the tool point, base frame.
-
-        Parameters
-        ----------
-        q : array_like, (n,)
-            Joints [rad or m].
-
-        Returns
-        -------
-        ndarray, (6, n)
-            Rows 0-2 linear [m/s], rows 3-5 angular velocity [rad/s], per unit joint rate.
-        """
-        return self._core.jacobian(vector(q, "q", self.joints))
-
-    def manipulability(self, q: ArrayLike) -> float:
-        """Yoshikawa's measure sqrt(det(J Jᵀ)) at q (n,) (Yoshikawa 1985)."""
-        return self._core.manipulability(vector(q, "q", self.joints))
-
-    def singularity(self, q: ArrayLike) -> _core.Singularity:
-        """How near the arm at q (n,) is to losing a direction: name, distance, manipulability."""
-        return self._core.singularity(vector(q, "q", self.joints))
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the robot as a .yaml file that `load_robot` reads back: the same fingerprint.
@@ -393,22 +270,3 @@ def _bound(value: ArrayLike | None, name: str, n: int, none: float) -> Vector:
     unlimited = array == none
     finite = _each(np.where(unlimited, 0.0, array), name, n)
     return np.where(unlimited, none, finite)
-
-
-def _checked(value: ArrayLike | None) -> Vector:
-    if value is None:
-        raise BadArgumentError("Neither pose nor position is given; give one of them.")
-    matrix, correction = pose(value, "pose")
-    if correction > NOTEWORTHY_CORRECTION:
-        warnings.warn(
-            f"The pose is a rotation only up to rounding; the nearest one is used, "
-            f"with elements changed by at most {correction:.3g}.",
-            PoseCorrectedWarning,
-            stacklevel=3,
-        )
-    return matrix
-
-
-def _only_one(value: ArrayLike | None) -> None:
-    if value is not None:
-        raise BadArgumentError("Both pose and position are given; give one of them.")

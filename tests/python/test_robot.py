@@ -6,7 +6,7 @@ import pytest
 import viapoint as vp
 from viapoint import errors
 
-BUILT_IN = ["panda", "puma560", "rpp", "scara", "two_link", "ur5e"]
+BUILT_IN = ["iiwa14", "panda", "puma560", "rpp", "scara", "two_link", "ur5e"]
 
 
 @pytest.mark.parametrize("name", BUILT_IN)
@@ -180,7 +180,7 @@ def test_a_robot_that_is_no_name_is_refused(name):
         vp.load_robot(name)
 
 
-@pytest.mark.parametrize("name", ["panda", "puma560", "rpp", "scara", "two_link", "ur5e"])
+@pytest.mark.parametrize("name", BUILT_IN)
 def test_a_saved_robot_is_the_same(name, tmp_path):
     robot = vp.load_robot(name).with_limits(velocity=0.123456789)
     robot.save(tmp_path / "own.yaml")

@@ -16,6 +16,7 @@ int side_of(const std::optional<double>& distance, double unit) {
 
 BranchInverse::BranchInverse(const ForwardKinematics& forward, const JointLimits& limits)
     : LimitedInverse(forward, limits),
+      walked_(forward),
       numerical_(forward, limits, "where the closed form does not answer") {}
 
 Configuration BranchInverse::configuration_of(const ArmSides& sides) {
@@ -31,22 +32,34 @@ void BranchInverse::keep_confirmed(const InverseTask& task, ClosedSolutions& fou
   // Branches meet at singular poses: what is found twice is kept once. What is kept stands before
   // the one looked at.
   int kept = 0;
+  ForwardWalk walk(walked_);
   found.branches.keep_if([&](const ClosedBranch& branch) {
-    if (!confirmed(task, branch.q)) return false;
+    if (!task.error_of(walk.pose(branch.q)).within(kPoseTolerance)) return false;
     for (int i = 0; i < kept; ++i) {
-      const JointVector apart = turns_.unlimited(branch.q, first[i].q) - first[i].q;
-      if (apart.lpNorm<Eigen::Infinity>() < kSame) return false;
+      if (are_same(branch.q, first[i].q)) return false;
     }
     ++kept;
     return true;
   });
 }
 
+bool BranchInverse::are_same(const JointVector& a, const JointVector& b) const {
+  for (int i = 0; i < joints(); ++i) {
+    double apart = std::abs(a[i] - b[i]);
+    if (apart < kSame) continue;
+    if (forward_.type(i) == JointType::kPrismatic) return false;
+    if (apart < 2.0 * kPi - kSame) return false;
+    if (std::abs(std::remainder(apart, 2.0 * kPi)) >= kSame) return false;
+  }
+  return true;
+}
+
 std::optional<JointVector> BranchInverse::nearest(const InverseTask& task,
                                                   const JointVector& candidate,
                                                   const JointVector& reference) const {
-  std::optional<JointVector> q = turns_.nearest(candidate, reference);
-  if (!q || *q == candidate || confirmed(task, *q)) return q;
+  bool moved = false;
+  std::optional<JointVector> q = turns_.nearest(candidate, reference, &moved);
+  if (!q || !moved || confirmed(task, *q)) return q;
   // A joint was set on its limit and misses the pose there: another turn may not need that.
   q.reset();
   for (const JointVector& turn : turns_.all(candidate, reference)) {

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "kinematics/closed_form.hpp"
+#include "kinematics/forward_walk.hpp"
 #include "kinematics/limited_inverse.hpp"
 #include "kinematics/numerical_inverse.hpp"
 #include "viapoint/core/units.hpp"
@@ -20,6 +21,7 @@ class BranchInverse : public LimitedInverse {
   /// Two branches are one when no joint differs by more than this, whole turns aside [rad or m].
   static constexpr double kSame = 1e-9;
 
+  [[nodiscard]] bool are_same(const JointVector& a, const JointVector& b) const;
   [[nodiscard]] static Configuration configuration_of(const ArmSides& sides);
   /// Leaves the distinct branches that the forward kinematics confirms. Real-time: safe.
   void keep_confirmed(const InverseTask& task, ClosedSolutions& found) const;
@@ -32,6 +34,7 @@ class BranchInverse : public LimitedInverse {
                                                    const JointVector& candidate,
                                                    const JointVector& reference) const;
 
+  WalkedChain walked_;
   NumericalInverse numerical_;  ///< for tasks the form cannot answer, and joints held badly
 };
 

@@ -105,9 +105,10 @@ BranchStatus ClosedFormInverse::solve_branches(const Pose& pose_base_tool, const
   for (const ClosedBranch& branch : found.branches) {
     std::optional<JointVector> best;
     each_share(branch, near, [&](const JointVector& candidate) {
-      const auto q = turns_.nearest(candidate, near);
+      bool moved = branch.wrist_free;
+      const auto q = turns_.nearest(candidate, near, &moved);
       if (!q || (best && !is_nearer(*q, *best, near))) return;
-      if (*q == branch.q || confirmed(task, *q)) best = *q;
+      if (!moved || confirmed(task, *q)) best = *q;
     });
     if (best && out.size() < kMostBranches) out.push_back(*best);
   }

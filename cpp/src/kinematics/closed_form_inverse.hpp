@@ -24,6 +24,9 @@ class ClosedFormInverse final : public BranchInverse {
                                            const JointVector& reference) const override;
   [[nodiscard]] BranchStatus solve_branches(const Pose& pose_base_tool, const JointVector& near,
                                             BranchSet& branches) const noexcept override;
+  [[nodiscard]] std::optional<ArmSides> singular_sides(const JointVector& q) const override {
+    return form_->sides(q);
+  }
 
  private:
   [[nodiscard]] Configuration sides(const JointVector& q) const override;

@@ -31,7 +31,11 @@ bool is_nearer(const JointVector& a, const JointVector& b, const JointVector& re
 }
 
 double wrap_near(double angle, double reference) {
-  return reference + std::remainder(angle - reference, kTurn);
+  const double apart = angle - reference;
+  if (std::abs(apart) <= kPi) return angle;
+  // Few turns are taken off without a division's loss; many keep their digits with the remainder.
+  if (std::abs(apart) < 8.0 * kPi) return angle - kTurn * std::round(apart / kTurn);
+  return reference + std::remainder(apart, kTurn);
 }
 
 JointTurns::JointTurns(const ForwardKinematics& forward, const JointLimits& limits)
@@ -57,7 +61,7 @@ JointVector JointTurns::unlimited(const JointVector& branch, const JointVector& 
 }
 
 std::optional<JointVector> JointTurns::nearest(const JointVector& branch,
-                                               const JointVector& reference) const {
+                                               const JointVector& reference, bool* moved) const {
   JointVector q = unlimited(branch, reference);
   for (int i = 0; i < joints_; ++i) {
     const double low = limits_.position_min[i];
@@ -66,12 +70,16 @@ std::optional<JointVector> JointTurns::nearest(const JointVector& branch,
       if (q[i] > high + kSnap) q[i] -= kTurn * std::ceil((q[i] - high - kSnap) / kTurn);
       if (q[i] < low - kSnap) q[i] += kTurn * std::ceil((low - kSnap - q[i]) / kTurn);
     }
-    if (distance_to(q[i], low, high) > kSnap) return std::nullopt;
+    const double outside = distance_to(q[i], low, high);
+    if (outside == 0.0) continue;
+    if (outside > kSnap) return std::nullopt;
     q[i] = std::clamp(q[i], low, high);
+    if (moved != nullptr) *moved = true;
   }
   if (coupled(q)) return q;
 
   // Coupled joints: another turn of some joint may be within the limits.
+  if (moved != nullptr) *moved = true;  // any of the turns may have been set on a limit
   std::optional<JointVector> best;
   each(branch, reference, [&](const JointVector& candidate) {
     if (!best || is_nearer(candidate, *best, reference)) best = candidate;

@@ -36,8 +36,10 @@ class JointTurns {
 
   /// The turn of `branch` nearest to `reference` that keeps every limit. A joint outside by no more
   /// than rounding at a singular pose is set on its limit: check the result by its pose.
+  /// @param moved set when that was done: else the result is `branch` but for whole turns
   [[nodiscard]] std::optional<JointVector> nearest(const JointVector& branch,
-                                                   const JointVector& reference) const;
+                                                   const JointVector& reference,
+                                                   bool* moved = nullptr) const;
   /// Every turn of `branch` within the limits (of joints without limits: the one nearest to
   /// `reference`).
   [[nodiscard]] std::vector<JointVector> all(const JointVector& branch,

@@ -59,6 +59,10 @@ BranchStatus LimitedInverse::solve_branches(const Pose&, const JointVector&,
   return BranchStatus::kNoClosedForm;
 }
 
+std::optional<ArmSides> LimitedInverse::singular_sides(const JointVector&) const {
+  return std::nullopt;
+}
+
 Configuration LimitedInverse::sides(const JointVector&) const { return {}; }
 
 Configuration LimitedInverse::configuration(const JointVector& q) const {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "kinematics/closed_form.hpp"
 #include "kinematics/inverse_errors.hpp"
 #include "kinematics/joint_turns.hpp"
 #include "viapoint/kinematics/inverse_kinematics.hpp"
@@ -36,6 +37,9 @@ class LimitedInverse : public InverseKinematics {
                                          const JointVector& reference) const = 0;
   [[nodiscard]] virtual JointVector near_unlimited(const InverseTask& task,
                                                    const JointVector& reference) const = 0;
+  /// How near q is to each singularity of the arm's own, where a closed form tells; for seven
+  /// joints none does, as another joint may make up for it.
+  [[nodiscard]] virtual std::optional<ArmSides> singular_sides(const JointVector& q) const;
 
  protected:
   LimitedInverse(const ForwardKinematics& forward, const JointLimits& limits);

@@ -234,6 +234,12 @@ std::optional<JointVector> NumericalInverse::follow(const InverseTask& task,
   return end.q;
 }
 
+std::optional<JointVector> NumericalInverse::find(const InverseTask& task,
+                                                  const JointVector& reference) const {
+  const Search found = search(task, reference, kStarts, 1);
+  return found.inside.empty() ? std::nullopt : std::optional(found.inside.front());
+}
+
 void NumericalInverse::refuse(const InverseTask& task, const Search& search_result) const {
   if (!search_result.outside.empty()) {
     refuse_outside_limits(forward_, turns_, search_result.outside);

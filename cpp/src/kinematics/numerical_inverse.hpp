@@ -28,6 +28,9 @@ class NumericalInverse final : public LimitedInverse {
   /// Where one descent from `reference`, within the limits all the way, arrives, if it does.
   [[nodiscard]] std::optional<JointVector> follow(const InverseTask& task,
                                                   const JointVector& reference) const;
+  /// The first solution within the limits that the starts find, without a word where there is none.
+  [[nodiscard]] std::optional<JointVector> find(const InverseTask& task,
+                                                const JointVector& reference) const;
 
  private:
   /// Where one descent ended.

@@ -1,6 +1,7 @@
 #include "kinematics/redundant_inverse.hpp"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <tuple>
 #include <utility>
@@ -10,9 +11,11 @@ namespace {
 
 constexpr double kNone = 1e300;
 constexpr double kNearEnough = 0.35;  ///< a change of every joint below this is near [rad]
-constexpr int kScan = 48;             ///< parameters of a first look
-constexpr int kFineScan = 1024;       ///< of a second one, where the first found nothing
-constexpr int kRefinements = 10;
+/// Parameters looked at, first few, then more where these found nothing.
+constexpr std::array kScans{16, 48};
+constexpr int kScan = 64;        ///< where the whole range counts
+constexpr int kFineScan = 1024;  ///< before a pose is given up
+constexpr int kRefinements = 6;
 constexpr int kHalvings = 40;
 /// Within this share of its range from a limit a joint is crowded, and at the limit that counts as
 /// much as a move of half a radian.
@@ -165,11 +168,15 @@ JointVector RedundantInverse::near(const InverseTask& task, const JointVector& r
     best.q = *followed;
     best.cost = far(best.q);
   }
-  for (const int count : {kScan, kFineScan}) {
+  for (const int count : kScans) {
     const Choice found = scan(task, count, reference, far);
     if (found.cost < best.cost) best = found;
     if (best.cost < kNone) return best.q;
   }
+  // Narrow stretches between those parameters: descents find them sooner than a finer scan.
+  if (const auto found = numerical_.find(task, reference)) return *found;
+  best = scan(task, kFineScan, reference, far);
+  if (best.cost < kNone) return best.q;
   const double missing = least_missing(task, reference);
   if (missing > kPoseTolerance) refuse_unreachable("the wrist at this pose", missing);
   // The search may know a parameter between those looked at, and says what is wrong.

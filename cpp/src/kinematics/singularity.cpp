@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "kinematics/closed_form.hpp"
+#include "kinematics/limited_inverse.hpp"
 #include "kinematics/task_jacobian.hpp"
 #include "viapoint/kinematics/robot_model.hpp"
 
@@ -24,8 +24,11 @@ double RobotModel::manipulability(const JointVector& q) const {
 Singularity RobotModel::singularity(const JointVector& q) const {
   Singularity found;
   found.manipulability = manipulability(q);
-  if (const auto arm = recognise_closed_form(forward_)) {
-    const ArmSides near = arm->sides(q);
+  const auto& inverse =
+      static_cast<const LimitedInverse&>(*inverse_);  // the factory makes no other
+  const std::optional<ArmSides> sides = inverse.singular_sides(q);
+  if (sides && (sides->shoulder || sides->elbow || sides->wrist)) {
+    const ArmSides& near = *sides;
     const auto nearness = [](const std::optional<double>& distance, double unit) {
       return distance ? std::abs(*distance) / unit : std::numeric_limits<double>::infinity();
     };

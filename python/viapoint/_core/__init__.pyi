@@ -16,8 +16,10 @@ __all__: list[str] = [
     "ANGLE_TOLERANCE",
     "CYCLE",
     "Certificate",
+    "Configuration",
     "ControllerLoop",
     "Corner",
+    "Dexterity",
     "Extremum",
     "Job",
     "JointLimits",
@@ -34,6 +36,7 @@ __all__: list[str] = [
     "RunReport",
     "Singularity",
     "Target",
+    "VelocityEllipsoid",
     "admit",
     "builtin_robots",
     "check",
@@ -234,6 +237,12 @@ class RobotModel:
     """
     An arm: chain, limits and kinematics.
     """
+    def configuration(
+        self, q: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
+    ) -> Configuration: ...
+    def dexterity(
+        self, q: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
+    ) -> Dexterity: ...
     def fk(
         self, q: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
     ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[4, 4]"]: ...
@@ -241,10 +250,23 @@ class RobotModel:
         self, q: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]
     ) -> numpy.typing.NDArray[numpy.float64]: ...
     def ik_all(
-        self, pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[4, 4]"]
+        self,
+        pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[4, 4]"],
+        near: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        config: Configuration,
+        redundancy: typing.SupportsFloat | typing.SupportsIndex | None,
     ) -> numpy.typing.NDArray[numpy.float64]: ...
     def ik_all_position(
-        self, position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"]
+        self,
+        position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"],
+        near: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        config: Configuration,
+    ) -> numpy.typing.NDArray[numpy.float64]: ...
+    def ik_batch(
+        self,
+        poses: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+        near: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+        nan: bool,
     ) -> numpy.typing.NDArray[numpy.float64]: ...
     def ik_near(
         self,
@@ -256,10 +278,25 @@ class RobotModel:
         position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"],
         near: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
     ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
+    def ik_quick(
+        self, pose: typing.Any, near: typing.Any
+    ) -> numpy.typing.NDArray[numpy.float64] | None:
+        """
+        ik_near() of arrays that need no conversion and no correction; None for others.
+        """
     def jacobian(
         self, q: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
     ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"]: ...
     def manipulability(
+        self, q: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
+    ) -> float: ...
+    def reach(
+        self,
+        direction: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"],
+        start: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"],
+        rotation: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 3]"] | None,
+    ) -> numpy.typing.NDArray[numpy.float64]: ...
+    def redundancy_of(
         self, q: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
     ) -> float: ...
     def singularity(
@@ -298,9 +335,118 @@ class RobotModel:
     @property
     def prismatic(self) -> list[bool]: ...
     @property
+    def redundancy(self) -> str:
+        """
+        What a pose leaves open, or an empty text.
+        """
+    @property
     def sources(self) -> list[str]: ...
     @property
     def title(self) -> str: ...
+
+class Configuration:
+    """
+    On which side of its singularities an arm stands.
+
+    shoulder "front" or "back" (the wrist before or behind axis 1), elbow "up" or "down" (as seen with the
+    shoulder in front), wrist "noflip" or "flip" (the sign of the wrist's bend); turns, one int a joint: k
+    with q in (-pi, pi] + 2 pi k. None is at the singularity, or an arm without that choice; in a wish it
+    stands for any.
+    """
+    def __init__(
+        self,
+        *,
+        shoulder: str | None = None,
+        elbow: str | None = None,
+        wrist: str | None = None,
+        turns: collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex] | None = None,
+    ) -> None: ...
+    def __repr__(self) -> str: ...
+    def fits(self, wish: Configuration) -> bool:
+        """
+        True when every side and turn that the wish names is this one's.
+        """
+    @property
+    def elbow(self) -> str | None:
+        """
+        "up", "down" or None.
+        """
+    @property
+    def shoulder(self) -> str | None:
+        """
+        "front", "back" or None.
+        """
+    @property
+    def turns(self) -> list[int]:
+        """
+        Whole turns, one a joint; empty in a wish for any.
+        """
+    @property
+    def wrist(self) -> str | None:
+        """
+        "noflip", "flip" or None.
+        """
+
+class VelocityEllipsoid:
+    """
+    The tool rates that joint rates of length 1 make.
+    """
+    @property
+    def axes(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 3]"]:
+        """
+        Unit vectors in the base frame, columns, longest axis first, (3, 3).
+        """
+    @property
+    def lengths(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        Half-axes [m or rad, per unit joint rate], (3,).
+        """
+
+class Dexterity:
+    """
+    How well an arm moves at one place.
+    """
+    def __repr__(self) -> str: ...
+    @property
+    def angular(self) -> VelocityEllipsoid:
+        """
+        Ellipsoid of the tool's orientation.
+        """
+    @property
+    def asada(self) -> float:
+        """
+        Least over greatest principal acceleration of the tool's point, 0 to 1.
+        """
+    @property
+    def condition(self) -> float:
+        """
+        1 / isotropy; inf at a singular pose.
+        """
+    @property
+    def isotropy(self) -> float:
+        """
+        Least over greatest singular value, metres over length, 0 to 1.
+        """
+    @property
+    def least(self) -> float:
+        """
+        Least singular value, metres over length.
+        """
+    @property
+    def length(self) -> float:
+        """
+        Makes metres comparable with radians [m].
+        """
+    @property
+    def linear(self) -> VelocityEllipsoid:
+        """
+        Ellipsoid of the tool's point.
+        """
+    @property
+    def yoshikawa(self) -> float:
+        """
+        sqrt(det(J J^T)).
+        """
 
 class PoseFit:
     """
@@ -760,11 +906,21 @@ class ControllerLoop:
         cycle: typing.SupportsFloat | typing.SupportsIndex,
     ) -> None: ...
     def close(self) -> None: ...
+    def jog(
+        self, velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
+    ) -> None:
+        """
+        Joint velocities for the next 250 ms.
+        """
     def run(self, motion: PlannedMotion) -> Job: ...
     @property
     def busy(self) -> bool: ...
     @property
     def is_open(self) -> bool: ...
+    @property
+    def jog_block(self) -> str: ...
+    @property
+    def jogging(self) -> bool: ...
     @property
     def measured(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
     @property

@@ -166,6 +166,16 @@ TEST(RobotModel, NamesTheElbowOfAPlanarArmAndHowNearItIs) {
   EXPECT_NEAR(robot->singularity(Eigen::Vector2d(0.3, 1.2)).distance, 1.2, 1e-9);
 }
 
+TEST(RobotModel, CallsSevenJointsSingularOnlyWhereADirectionIsLost) {
+  const RobotPtr robot = arm("iiwa14");
+  JointVector q(7);
+  q << 0.3, 0.0, 0.4, -1.2, 0.5, 0.9, 0.2;  // axes 1 and 3 in line: the others make up for it
+  EXPECT_EQ(robot->singularity(q).name, "none");
+  q << 0.3, 0.7, 0.4, 0.0, 0.5, 0.9, 0.2;  // stretched
+  EXPECT_EQ(robot->singularity(q).name, "boundary");
+  EXPECT_LT(robot->singularity(q).distance, 1e-9);
+}
+
 TEST(RobotModel, CallsAGeneralArmNearItsBoundary) {
   // A PUMA out of true by 0.1 mm has no closed form: its smallest singular value tells.
   RobotDescription description = load_description(VIAPOINT_TEST_ROBOTS "/puma560.yaml");

@@ -1,0 +1,63 @@
+#include "kinematics/forward_walk.hpp"
+
+#include <cmath>
+
+namespace viapoint {
+
+WalkedChain::WalkedChain(const ForwardKinematics& forward) : joints_(forward.joints()) {
+  const ChainFrames zero = forward.frames(JointVector::Zero(joints_));
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  for (int i = 0; i < joints_; ++i) {
+    const auto k = static_cast<size_t>(i);
+    Eigen::Matrix3d next;
+    next.col(2) = zero.axis[k];
+    next.col(0) = zero.axis[k].unitOrthogonal();
+    next.col(1) = next.col(2).cross(next.col(0));
+    steps_[k].type = forward.type(i);
+    steps_[k].rotation = rotation.transpose() * next;
+    steps_[k].offset = rotation.transpose() * (zero.origin[k] - origin);
+    rotation = next;
+    origin = zero.origin[k];
+  }
+  tool_rotation_ = rotation.transpose() * zero.pose_base_tool.linear();
+  tool_offset_ = rotation.transpose() * (zero.pose_base_tool.translation() - origin);
+}
+
+Pose ForwardWalk::pose(const JointVector& q) {
+  int from = 0;
+  while (from < known_ && q[from] == last_[from]) ++from;
+  for (int i = from; i < chain_.joints_; ++i) {
+    const auto k = static_cast<size_t>(i);
+    const WalkedChain::Step& step = chain_.steps_[k];
+    Eigen::Matrix3d& rotation = rotation_[k];
+    Eigen::Vector3d& origin = origin_[k];
+    if (i == 0) {
+      rotation = step.rotation;
+      origin = step.offset;
+    } else {
+      rotation.noalias() = rotation_[k - 1] * step.rotation;
+      origin = origin_[k - 1];
+      origin.noalias() += rotation_[k - 1] * step.offset;
+    }
+    if (step.type == JointType::kPrismatic) {
+      origin += q[i] * rotation.col(2);
+      continue;
+    }
+    const double c = std::cos(q[i]);
+    const double s = std::sin(q[i]);
+    const Eigen::Vector3d x = rotation.col(0);
+    rotation.col(0) = c * x + s * rotation.col(1);
+    rotation.col(1) = c * rotation.col(1) - s * x;
+  }
+  last_ = q;
+  known_ = chain_.joints_;
+  const auto end = static_cast<size_t>(chain_.joints_ - 1);
+  Pose out = Pose::Identity();
+  out.linear().noalias() = rotation_[end] * chain_.tool_rotation_;
+  out.translation() = origin_[end];
+  out.translation().noalias() += rotation_[end] * chain_.tool_offset_;
+  return out;
+}
+
+}  // namespace viapoint
