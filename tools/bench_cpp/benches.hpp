@@ -13,5 +13,8 @@ void bench_certificate(int programs);
 /// Random walks in joint space, corners rounded: how much of the time of stopping at every point is
 /// left, and what planning costs a point. @param paths to plan a case
 void bench_walk(int paths);
+/// Inverse kinematics of every built-in arm at random poses within its limits: times, poses left
+/// unsolved, and branches that miss the joints that made the pose. @param poses for each arm
+void bench_kinematics(int poses);
 
 }  // namespace viapoint::bench

@@ -9,11 +9,12 @@ namespace {
 
 constexpr std::string_view kUsage =
     "usage: viapoint-bench tick [TICKS] | plan [PROGRAMS] | certificate [PROGRAMS] |\n"
-    "                      walk [PATHS] | all\n"
+    "                      walk [PATHS] | kinematics [POSES] | all\n"
     "Prints one JSON object a line; times as its keys say.\n";
 
 constexpr int kTicks = 1'000'000;
 constexpr int kPrograms = 100;
+constexpr int kPoses = 1'000'000;
 constexpr int kPaths = 20;
 
 int count_of(int argc, char** argv, int otherwise) {
@@ -26,6 +27,7 @@ int count_of(int argc, char** argv, int otherwise) {
 
 int default_count(std::string_view command) {
   if (command == "tick") return kTicks;
+  if (command == "kinematics") return kPoses;
   return command == "walk" ? kPaths : kPrograms;
 }
 
@@ -48,7 +50,10 @@ int main(int argc, char** argv) {
       bench_certificate(count);
     } else if (command == "walk") {
       bench_walk(count);
+    } else if (command == "kinematics") {
+      bench_kinematics(count);
     } else if (command == "all" && argc == 2) {
+      bench_kinematics(kPoses);
       bench_tick(kTicks);
       bench_plan(kPrograms);
       bench_certificate(kPrograms);

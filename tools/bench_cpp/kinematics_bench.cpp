@@ -1,0 +1,125 @@
+#include <time.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+
+#include "benches.hpp"
+#include "durations.hpp"
+#include "json_line.hpp"
+#include "viapoint/core/error.hpp"
+#include "viapoint/kinematics/inverse_kinematics.hpp"
+#include "viapoint/kinematics/robot_model.hpp"
+
+namespace viapoint::bench {
+namespace {
+
+/// Processor time of this thread [s]: other programs on the machine do not count.
+double processor_time() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+JointVector random_joints(const JointLimits& limits, std::mt19937_64& generator) {
+  JointVector q(limits.joints());
+  for (int i = 0; i < q.size(); ++i) {
+    q[i] = std::uniform_real_distribution<double>(limits.position_min[i],
+                                                  limits.position_max[i])(generator);
+  }
+  return q;
+}
+
+/// Worst of position [m] and angle [rad].
+double miss(const RobotModel& robot, const JointVector& q, const Pose& pose) {
+  const Pose reached = robot.forward().pose(q);
+  return std::max((reached.translation() - pose.translation()).norm(),
+                  rotation_distance(reached.linear(), pose.linear()));
+}
+
+/// Every branch of random poses: times, how many poses are solved, and whether the joints that made
+/// the pose are among them.
+void branches_of(const std::string& name, const RobotModel& robot, int poses) {
+  std::mt19937_64 generator(1);
+  Durations durations;
+  durations.reserve(static_cast<size_t>(poses));
+  int solved = 0;
+  int found = 0;
+  double worst = 0.0;
+  double count = 0.0;
+  for (int i = 0; i < poses; ++i) {
+    const JointVector q = random_joints(robot.limits(), generator);
+    const Pose pose = robot.forward().pose(q);
+    BranchSet branches;
+    const double before = processor_time();
+    const BranchStatus status = robot.inverse().solve_branches(pose, q, branches);
+    durations.add(processor_time() - before);
+    solved += status == BranchStatus::kSolved ? 1 : 0;
+    bool again = false;
+    for (const JointVector& branch : branches) {
+      worst = std::max(worst, miss(robot, branch, pose));
+      again = again || (branch - q).lpNorm<Eigen::Infinity>() < 1e-6;
+    }
+    found += again ? 1 : 0;
+    count += branches.size();
+  }
+  JsonLine("kinematics", name + " branches")
+      .add("poses", poses)
+      .add("unsolved", poses - solved)
+      .add("joints_not_found", poses - found)
+      .add("branches", count / poses)
+      .add("worst_error", worst)
+      .add("processor_p50_us", 1e6 * durations.quantile(0.5))
+      .add("processor_p99_us", 1e6 * durations.quantile(0.99));
+}
+
+/// The nearest solution to random joints: far from them in general.
+void nearest_of(const std::string& name, const RobotModel& robot, int poses) {
+  std::mt19937_64 generator(2);
+  Durations durations;
+  durations.reserve(static_cast<size_t>(poses));
+  int unsolved = 0;
+  double worst = 0.0;
+  for (int i = 0; i < poses; ++i) {
+    const Pose pose = robot.forward().pose(random_joints(robot.limits(), generator));
+    const JointVector near = random_joints(robot.limits(), generator);
+    const double before = processor_time();
+    try {
+      const JointVector q = robot.inverse().solve_near(pose, near);
+      durations.add(processor_time() - before);
+      worst = std::max(worst, miss(robot, q, pose));
+    } catch (const MotionError&) {
+      ++unsolved;
+    }
+  }
+  JsonLine("kinematics", name + " nearest")
+      .add("poses", poses)
+      .add("unsolved", unsolved)
+      .add("worst_error", worst)
+      .add("processor_p50_us", 1e6 * durations.quantile(0.5))
+      .add("processor_p99_us", 1e6 * durations.quantile(0.99));
+}
+
+}  // namespace
+
+void bench_kinematics(int poses) {
+  for (const std::string name : {"puma560", "ur5e", "scara", "rpp", "two_link"}) {
+    const RobotPtr robot = RobotModel::make(load_description(name));
+    branches_of(name, *robot, poses);
+    nearest_of(name, *robot, poses);
+  }
+  constexpr int kSlower = 10;  // times slower, and so many fewer poses
+  for (const std::string name : {"panda", "iiwa14"}) {
+    nearest_of(name, *RobotModel::make(load_description(name)), std::max(1, poses / kSlower));
+  }
+  for (const std::string name : {"puma560", "ur5e"}) {
+    RobotDescription description = load_description(name);
+    // Axis 3 out of true, as a calibration finds it: no closed form.
+    description.chain[2].before.linear() =
+        description.chain[2].before.linear() * rotation_exp(Eigen::Vector3d(1e-4, 0.0, 0.0));
+    nearest_of(name + " numerical", *RobotModel::make(description), std::max(1, poses / kSlower));
+  }
+}
+
+}  // namespace viapoint::bench
