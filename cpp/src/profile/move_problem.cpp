@@ -42,61 +42,64 @@ MoveStatus MoveProblem::solve(const AxisState& start, const AxisState& end,
   duration_ = free_.solve_quickest();
   has_walls_ = low > -kNone || high < kNone;
   if (!has_walls_) return status;
-  std::construct_at(&between_);
-  between_.to = end;
+  std::construct_at(&between_.value);
+  between_.value.to = end;
   return solve_between_walls(start, limits, move);
 }
 
 MoveStatus MoveProblem::solve_between_walls(const AxisState& start, const AxisLimits& limits,
                                             const AxisMove& begun) noexcept {
-  between_.has_calm = false;
-  between_.searches = 0;
-  between_.limits = limits;
-  between_.limits.position_min = -kNone;
-  between_.limits.position_max = kNone;
-  between_.from = begun.end;
-  between_.begun = begun.total;
+  between_.value.has_calm = false;
+  between_.value.searches = 0;
+  between_.value.limits = limits;
+  between_.value.limits.position_min = -kNone;
+  between_.value.limits.position_max = kNone;
+  between_.value.from = begun.end;
+  between_.value.begun = begun.total;
 
   AxisMove free = begun;
   free_.append_quickest(free);
   const AxisMove::Extent extent = free.extent();
   const double low = limits.position_min, high = limits.position_max;
-  between_.walls = {low, high,
-                    kWallSlack * (extent.high - extent.low) +
-                        kPositionRounding * (std::abs(start.q) + std::abs(between_.to.q)),
-                    low, high};
-  if (!(between_.to.q <= high + between_.walls.slack &&
-        between_.to.q >= low - between_.walls.slack)) {
+  between_.value.walls = {
+      low, high,
+      kWallSlack * (extent.high - extent.low) +
+          kPositionRounding * (std::abs(start.q) + std::abs(between_.value.to.q)),
+      low, high};
+  if (!(between_.value.to.q <= high + between_.value.walls.slack &&
+        between_.value.to.q >= low - between_.value.walls.slack)) {
     return MoveStatus::kEndPosition;
   }
-  if (start.q > high + between_.walls.slack || start.q < low - between_.walls.slack) {
+  if (start.q > high + between_.value.walls.slack || start.q < low - between_.value.walls.slack) {
     AxisMove stop;
-    const MoveStatus status = quickest_velocity_change(start, {}, between_.limits, stop);
+    const MoveStatus status = quickest_velocity_change(start, {}, between_.value.limits, stop);
     if (status != MoveStatus::kSolved) return status;
     const AxisMove::Extent reach = stop.extent();
-    between_.walls.start_low = std::min(low, reach.low);
-    between_.walls.start_high = std::max(high, reach.high);
+    between_.value.walls.start_low = std::min(low, reach.low);
+    between_.value.walls.start_high = std::max(high, reach.high);
   }
-  if (!between_.walls.hold(begun)) return MoveStatus::kStartTooFast;
-  between_.route.stops = 0;
-  if (between_.walls.hold(free)) return MoveStatus::kSolved;
+  if (!between_.value.walls.hold(begun)) return MoveStatus::kStartTooFast;
+  between_.value.route.stops = 0;
+  if (between_.value.walls.hold(free)) return MoveStatus::kSolved;
 
-  RouteSearch search(between_.from, between_.to, between_.limits, between_.walls);
+  RouteSearch search(between_.value.from, between_.value.to, between_.value.limits,
+                     between_.value.walls);
   const MoveStatus status = search.admit();
   if (status != MoveStatus::kSolved) return status;
-  between_.walls = search.walls();
-  between_.route = search.quickest();
-  between_.calm = search.calm();
-  between_.has_calm = true;
-  if (!(between_.route.duration <= between_.calm.duration)) between_.route = between_.calm;
-  if (!std::isfinite(between_.route.duration)) return MoveStatus::kNoRoom;
-  duration_ = between_.begun + between_.route.duration;
+  between_.value.walls = search.walls();
+  between_.value.route = search.quickest();
+  between_.value.calm = search.calm();
+  between_.value.has_calm = true;
+  if (!(between_.value.route.duration <= between_.value.calm.duration))
+    between_.value.route = between_.value.calm;
+  if (!std::isfinite(between_.value.route.duration)) return MoveStatus::kNoRoom;
+  duration_ = between_.value.begun + between_.value.route.duration;
   return MoveStatus::kSolved;
 }
 
 void MoveProblem::append_quickest(AxisMove& move) const noexcept {
-  if (has_walls_ && between_.route.stops > 0) {
-    (void)append_route(between_.route, -1, 0.0, move);
+  if (has_walls_ && between_.value.route.stops > 0) {
+    (void)append_route(between_.value.route, -1, 0.0, move);
     move.total = duration_;
   } else {
     free_.append_quickest(move);
@@ -105,12 +108,13 @@ void MoveProblem::append_quickest(AxisMove& move) const noexcept {
 
 bool MoveProblem::append_route(const Route& route, int stretched, double more,
                                AxisMove& move) const noexcept {
-  AxisState here = between_.from;
+  AxisState here = between_.value.from;
   for (int i = 0; i <= route.stops; ++i) {
-    const AxisState& next = i < route.stops ? route.stop[static_cast<size_t>(i)] : between_.to;
+    const AxisState& next =
+        i < route.stops ? route.stop[static_cast<size_t>(i)] : between_.value.to;
     AxisProblem problem;
     AxisMove leg;
-    if (problem.set(here, next, between_.limits, leg) != MoveStatus::kSolved) return false;
+    if (problem.set(here, next, between_.value.limits, leg) != MoveStatus::kSolved) return false;
     const double quickest = problem.solve_quickest();
     const double wanted = i == stretched ? quickest + more : quickest;
     if (wanted == quickest) {
@@ -131,20 +135,22 @@ bool MoveProblem::append_route(const Route& route, int stretched, double more,
 }
 
 const Route& MoveProblem::calm() noexcept {
-  if (!between_.has_calm) {
-    RouteSearch search(between_.from, between_.to, between_.limits, between_.walls);
+  if (!between_.value.has_calm) {
+    RouteSearch search(between_.value.from, between_.value.to, between_.value.limits,
+                       between_.value.walls);
     (void)
         search.admit();  // the walls may have to give way to rounding; that there is a way is known
-    between_.calm = search.calm();
+    between_.value.calm = search.calm();
   }
-  between_.has_calm = true;
-  return between_.calm;
+  between_.value.has_calm = true;
+  return between_.value.calm;
 }
 
 bool MoveProblem::find_stretched(double more, AxisMove& move) const noexcept {
   const AxisMove begun = move;
-  for (int leg = between_.route.stops; leg >= 0; --leg) {
-    if (append_route(between_.route, leg, more, move) && between_.walls.hold(move, begun.phases))
+  for (int leg = between_.value.route.stops; leg >= 0; --leg) {
+    if (append_route(between_.value.route, leg, more, move) &&
+        between_.value.walls.hold(move, begun.phases))
       return true;
     move = begun;
   }
@@ -156,13 +162,13 @@ bool MoveProblem::find_lasting(double duration, AxisMove& move) noexcept {
   bool found = false;
   if (free_.next_duration(duration) == duration) {
     free_.append_lasting(duration, move);
-    found = between_.walls.hold(move, begun.phases);
+    found = between_.value.walls.hold(move, begun.phases);
     if (!found) move = begun;
   }
-  if (!found && between_.route.stops > 0) found = find_stretched(duration - duration_, move);
-  if (!found && duration >= between_.begun + calm().duration) {
-    found =
-        append_route(between_.calm, -1, duration - between_.begun - between_.calm.duration, move);
+  if (!found && between_.value.route.stops > 0) found = find_stretched(duration - duration_, move);
+  if (!found && duration >= between_.value.begun + calm().duration) {
+    found = append_route(between_.value.calm, -1,
+                         duration - between_.value.begun - between_.value.calm.duration, move);
     if (!found) move = begun;
   }
   if (found) move.total = duration;
@@ -175,11 +181,11 @@ double MoveProblem::next_duration(double duration, const AxisMove& begun) noexce
   AxisMove scratch = begun;
   if (find_lasting(duration, scratch)) return duration;
   // From the calm way's on all last. An axis that is too fast to rest anywhere has none.
-  const double calm_duration = between_.begun + calm().duration;
+  const double calm_duration = between_.value.begun + calm().duration;
   const bool can_rest = std::isfinite(calm_duration);
   if (can_rest && duration >= calm_duration) return kNone;
   const double last = can_rest ? calm_duration : kLongest * duration;
-  if (++between_.searches > kSearches) return can_rest ? last : kNone;
+  if (++between_.value.searches > kSearches) return can_rest ? last : kNone;
   double bad = duration, good = can_rest ? last : kNone;
   for (int i = 1; i < kProbes; ++i) {
     const double t = duration + (last - duration) * i / kProbes;

@@ -11,7 +11,7 @@ namespace viapoint {
 /// Real-time: safe.
 class MoveProblem {
  public:
-  // Not `= default`: most of it is not needed most of the time.
+  // NOLINTNEXTLINE(modernize-use-equals-default): that would have it filled with zeros first
   MoveProblem() noexcept {}
 
   /// Solves for the quickest motion; what comes back inside the limits of velocity and acceleration
@@ -51,12 +51,16 @@ class MoveProblem {
     int searches;
   };
 
+  /// Made only where there are walls.
+  union MaybeBetween {
+    MaybeBetween() noexcept {}
+    Between value;
+  };
+
   AxisProblem free_;
   double duration_;
   bool has_walls_;
-  union {
-    Between between_;  ///< made only where there are walls
-  };
+  MaybeBetween between_;
 };
 
 }  // namespace viapoint

@@ -12,10 +12,10 @@ namespace {
 /// of a phase, and where the velocity is zero within it. Stops where `visit` returns false.
 template <typename Visit>
 bool visit_turns(const AxisMove& move, int first, Visit visit) noexcept {
-  for (int i = first; i < move.phases; ++i) {
-    const auto& [duration, from] = move.phase[static_cast<size_t>(i)];
-    const AxisState& next =
-        i + 1 < move.phases ? move.phase[static_cast<size_t>(i + 1)].from : move.end;
+  const auto phases = static_cast<size_t>(move.phases);
+  for (auto i = static_cast<size_t>(first); i < phases; ++i) {
+    const auto& [duration, from] = move.phase[i];
+    const AxisState& next = i + 1 < phases ? move.phase[i + 1].from : move.end;
     // v(t) = v + a t + j t²/2: its zeros, whichever way they are best known.
     const double under = from.qdd * from.qdd - 2.0 * from.qddd * from.qd;
     const double half = -(from.qdd + std::copysign(std::sqrt(std::max(under, 0.0)), from.qdd));
