@@ -204,6 +204,17 @@ void bind_realtime(py::module_& m) {
             return JobHandle{loop->run(motion.trajectory), l.joints};
           },
           py::arg("motion"), py::keep_alive<0, 1>())
+      .def(
+          "jog",
+          [](const LoopHandle& l, const Vector& velocity) {
+            const std::shared_ptr<ControllerLoop> loop = l.open();
+            const JointVector wished = joints_from(velocity, "velocity", l.joints);
+            const Release release;
+            loop->jog(wished);
+          },
+          py::arg("velocity"), "Joint velocities for the next 250 ms.")
+      .def_property_readonly("jogging", [](const LoopHandle& l) { return l.open()->jogging(); })
+      .def_property_readonly("jog_block", [](const LoopHandle& l) { return l.open()->jog_block(); })
       .def_property(
           "override", [](const LoopHandle& l) { return l.open()->override_share(); },
           [](const LoopHandle& l, double share) { l.open()->set_override(share); })

@@ -28,6 +28,11 @@ class Loop(Protocol):
     override: float
 
     def run(self, motion: _core.PlannedMotion) -> Execution: ...
+    def jog(self, velocity: Vector) -> None: ...
+    @property
+    def jogging(self) -> bool: ...
+    @property
+    def jog_block(self) -> str: ...
     @property
     def measured(self) -> Vector: ...
     @property
@@ -81,7 +86,7 @@ class Arm:
             self.close()
 
     def close(self) -> None:
-        """Disconnect; a run under way is brought to rest on its path first."""
+        """Disconnect; a run under way is brought to rest on its path first, a jog as it can."""
         self._loop.close()
 
     def run(self, program: Program | Motion, wait: bool = True) -> Job:
@@ -132,6 +137,42 @@ class Arm:
                     ways_out=["Plan a new program from where the arm rests: start=arm.setpoint."],
                 )
         return job
+
+    def jog(self, velocity: ArrayLike) -> None:
+        """Turn the joints at `velocity` for as long as this is called again within 250 ms.
+
+        Hold-to-run: call it at 10 Hz or more for as long as the button is held. When the calls
+        stop, or with zeros, every joint comes to rest within its limits. A joint stops at its
+        position limit by itself, the arm before a coupled limit; `jog_block` tells. The velocity
+        may change with every call. The override does not act on it.
+
+        Parameters
+        ----------
+        velocity : array_like, (n,)
+            Of each joint [rad/s or m/s].
+
+        Raises
+        ------
+        BusyError
+            A run is under way, also one that pauses: the arm jogs between runs.
+        VelocityLimitError
+            A joint is asked for more than its velocity limit.
+        BadArgumentError
+            Not n finite numbers.
+        DriveFaultError
+            The drive has failed, or the arm is closed.
+        """
+        self._loop.jog(vector(velocity, "velocity", self.robot.joints))
+
+    @property
+    def jogging(self) -> bool:
+        """True until a jog has come to rest; programs are refused meanwhile (`BusyError`)."""
+        return self._loop.jogging
+
+    @property
+    def jog_block(self) -> str:
+        """What keeps the jog, or kept the last one, from doing what was asked; empty if nothing."""
+        return self._loop.jog_block
 
     @property
     def override(self) -> float:

@@ -201,6 +201,34 @@ class VirtualLoop:
         self._run = VirtualExecution(motion, self._override, self._cycle)
         return self._run
 
+    def jog(self, velocity: Vector) -> None:
+        """Check the arm only: it stays where it is, because no time passes between two calls.
+
+        Raises
+        ------
+        BusyError
+            A run is under way.
+        DriveFaultError
+            The arm is closed.
+        """
+        if self.busy:
+            raise BusyError(
+                "A run is under way, and the arm jogs only between runs.",
+                ways_out=["Wait for its end.", "Stop it first."],
+            )
+
+    @property
+    def jogging(self) -> bool:
+        """Never: see `jog`."""
+        self._require_open()
+        return False
+
+    @property
+    def jog_block(self) -> str:
+        """Nothing: see `jog`."""
+        self._require_open()
+        return ""
+
     def close(self) -> None:
         """Disconnect; a run under way is brought to rest on its path first."""
         if self._run is not None:

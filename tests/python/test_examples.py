@@ -13,6 +13,7 @@ EXAMPLES = Path(__file__).parents[2] / "python" / "examples"
 SAYS = {
     "gluing_contour.py": ["the bead is proven within", "zone of move"],
     "own_curve.py": ["of the curve at", "finished after"],
+    "jog_to_a_limit.py": ["let go", "at its position limit", "finished"],
     "override_and_stop.py": ["paused", "finished", "stopped after"],
     "puma560_abc.py": [
         "joint_limit",
