@@ -175,4 +175,23 @@ Eigen::VectorXd CurveFollower::singular_values(const JointVector& q) const {
   return Eigen::JacobiSVD<Eigen::MatrixXd>(block).singularValues();
 }
 
+std::array<bool, 6> CurveFollower::holds(const JointVector& q) const {
+  // A coordinate is free when its unit vector lies in what the joints can make of rates.
+  constexpr double kIndependent = 1e-6;
+  const Eigen::MatrixXd block = scaled(arm_.jacobian(arm_.frames(q)));
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(block, Eigen::ComputeThinU);
+  const Eigen::VectorXd values = svd.singularValues();
+  std::array<bool, 6> which{};
+  for (Eigen::Index i = 0; i < coordinates_; ++i) {
+    double within = 0.0;
+    for (Eigen::Index k = 0; k < values.size(); ++k) {
+      if (values[k] > kIndependent * values[0]) {
+        within += svd.matrixU()(i, k) * svd.matrixU()(i, k);
+      }
+    }
+    which[static_cast<size_t>(i)] = within > 1.0 - kIndependent;
+  }
+  return which;
+}
+
 }  // namespace viapoint

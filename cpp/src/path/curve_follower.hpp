@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/QR>
+#include <array>
 #include <optional>
 
 #include "viapoint/path/insertion.hpp"
@@ -40,6 +41,9 @@ class CurveFollower {
   [[nodiscard]] Twist nearest_miss(double s, JointVector guess) const;
   /// Singular values of the held rows, largest first.
   [[nodiscard]] Eigen::VectorXd singular_values(const JointVector& q) const;
+  /// The coordinates (x, y, z, then rotations) that the joints can move one by one while the others
+  /// that are asked for stay.
+  [[nodiscard]] std::array<bool, 6> holds(const JointVector& q) const;
 
  private:
   /// Held rows and free columns, on the stack.

@@ -29,7 +29,7 @@ constexpr double kClearOfSingularity = 1e-2;
 constexpr int kShareHalvings = 60;
 
 constexpr const char* kWristWayOut =
-    "keep the tool position straight and interpolate the wrist joints (orientation=\"wrist\")";
+    "keep the tool position on the curve and interpolate the wrist joints (orientation=\"wrist\")";
 
 std::string format(const char* pattern, double a, double b = 0.0, double c = 0.0) {
   std::array<char, 300> text{};
@@ -61,18 +61,27 @@ Ahead look_ahead(const CurveFollower& follower, const PathPoint& here, double s,
   return best;
 }
 
-/// "z and rotation about x", from the coordinates that carry the miss.
-std::string coordinate_names(const Twist& miss) {
+/// "x, rotation about z": those that are true.
+std::string coordinate_names(const std::array<bool, 6>& which) {
   static constexpr std::array<const char*, 6> kNames = {
       "x", "y", "z", "rotation about x", "rotation about y", "rotation about z"};
-  const double largest = miss.cwiseAbs().maxCoeff();
   std::string names;
-  for (int i = 0; i < 6; ++i) {
-    if (std::abs(miss[i]) < 0.1 * largest) continue;
+  for (size_t i = 0; i < kNames.size(); ++i) {
+    if (!which[i]) continue;
     if (!names.empty()) names += ", ";
-    names += kNames[static_cast<size_t>(i)];
+    names += kNames[i];
   }
-  return names;
+  return names.empty() ? "none" : names;
+}
+
+/// The coordinates that carry the miss.
+std::array<bool, 6> missed(const Twist& miss) {
+  std::array<bool, 6> which{};
+  const double largest = miss.cwiseAbs().maxCoeff();
+  for (size_t i = 0; i < which.size(); ++i) {
+    which[i] = std::abs(miss[static_cast<Eigen::Index>(i)]) >= 0.1 * largest;
+  }
+  return which;
 }
 
 /// The stretched chain from the first joint to the tool, which nothing can be farther than [m].
@@ -94,12 +103,14 @@ double length_of_chain(const ForwardKinematics& arm, const JointLimits& limits,
   return length;
 }
 
-Problem too_few_joints(const CurveFollower& follower, const Ahead& ahead, double share) {
+Problem too_few_joints(const CurveFollower& follower, const PathPoint& here, const Ahead& ahead,
+                       double share) {
   Problem problem;
   problem.code = ErrorCode::kUncontrolled;
   problem.message = format("beyond %.2f %% of the curve the %.0f joints of the arm cannot hold ",
                            100.0 * share, static_cast<double>(follower.free_joints())) +
-                    coordinate_names(ahead.miss);
+                    coordinate_names(missed(ahead.miss)) +
+                    "; what it can hold there: " + coordinate_names(follower.holds(here.q));
   problem.value = ahead.miss.norm();
   problem.ways_out = {"ask only for the tool position, or keep the orientation the arm can hold",
                       "use a joint move to the goal"};
@@ -117,7 +128,7 @@ Problem out_of_reach(const Ahead& ahead, double share, const InsertionOptions& o
   problem.value = ahead.miss.head<3>().norm();
   problem.limit = options.position_tolerance;
   problem.ways_out = {"move the points nearer to the arm",
-                      "use a joint move where the straight line is not needed"};
+                      "use a joint move where the curve is not needed"};
   return problem;
 }
 
@@ -134,7 +145,7 @@ Problem singular(const PathPoint& here, double smallest, double share,
   problem.joint = fastest;
   problem.value = smallest;
   problem.ways_out = {"use a joint move for this leg",
-                      "move the line a little aside, or change its orientation"};
+                      "move the curve a little aside, or change its orientation"};
   if (options.hold == Hold::kPose) problem.ways_out.emplace_back(kWristWayOut);
   return problem;
 }
@@ -153,7 +164,7 @@ void throw_insertion_failure(const CurveFollower& follower, const TaskCurve& cur
     problem = singular(here, smallest, share, options);
   } else if (follower.free_joints() < follower.coordinates() &&
              smallest > kClearOfSingularity * values[0]) {
-    problem = too_few_joints(follower, ahead, share);
+    problem = too_few_joints(follower, here, ahead, share);
   } else {
     problem = out_of_reach(ahead, share, options);
   }

@@ -124,7 +124,7 @@ class Walk {
       char text[160];
       std::snprintf(
           text, sizeof text,
-          "tolerance of straight lines: %g m and %g rad; each must be at least %g and finite",
+          "tolerance of lines and curves: %g m and %g rad; each must be at least %g and finite",
           tolerance.position, tolerance.angle, kFinestTolerance);
       add(ErrorCode::kBadArgument, text);
       return false;

@@ -12,53 +12,6 @@ namespace {
 using testing::expect_sound;
 using testing::joints_in_degrees;
 using testing::problem_of;
-using testing::random_vector;
-
-/// Joint limits of the size that arms have.
-JointLimits range_of(const ForwardKinematics& arm) {
-  JointVector most(arm.joints());
-  for (int i = 0; i < arm.joints(); ++i) {
-    most[i] = arm.type(i) == JointType::kPrismatic ? 0.6 : 2.4;
-  }
-  return testing::symmetric_limits(most);
-}
-
-/// A curve of one of five kinds from where the arm stands; small enough that many can be followed.
-std::unique_ptr<TaskCurve> random_curve(const ForwardKinematics& arm, std::mt19937& random,
-                                        const JointVector& start, Hold hold) {
-  const Pose from = arm.pose(start);
-  const bool oriented = hold == Hold::kPose && arm.joints() >= 6;
-  std::uniform_real_distribution<double> unit(0.0, 1.0);
-  const Eigen::Vector3d center = from.translation() + random_vector(random, 0.05);
-  const Eigen::Vector3d axis = arm.joints() >= 6 || hold == Hold::kPosition
-                                   ? random_vector(random, 1.0)
-                                   : Eigen::Vector3d::UnitZ();
-  const double angle = (unit(random) < 0.5 ? -1.0 : 1.0) * (0.2 + 6.5 * unit(random));
-  switch (random() % 5) {
-    case 0:
-      return testing::helix(from, center, axis, angle, 0.0, false);
-    case 1:
-      return testing::helix(from, center, axis, angle, 0.03 * unit(random), hold == Hold::kPose);
-    case 2: {
-      const auto poses = testing::poses_on_a_walk(arm, random, start, 2 + random() % 6, 0.06);
-      return testing::spline_through(poses, 3, oriented);
-    }
-    case 3: {
-      const auto poses = testing::poses_on_a_walk(arm, random, start, 2 + random() % 6, 0.06);
-      return testing::spline_through(poses, 5, oriented);
-    }
-    default: {
-      const auto poses = testing::poses_on_a_walk(arm, random, start, 5 + random() % 5, 0.06);
-      double length = 0.0;
-      for (size_t k = 1; k < poses.size(); ++k) {
-        length += (poses[k].translation() - poses[k - 1].translation()).norm();
-      }
-      return std::make_unique<ToolCurve>(
-          std::make_unique<SplineCurve>(b_spline_path(testing::positions_of(poses), 3, length)),
-          std::make_unique<SteadyTurn>(from.linear(), Eigen::Vector3d::Zero()));
-    }
-  }
-}
 
 struct Sweep {
   const char* name;
@@ -71,7 +24,7 @@ class CurveSweep : public ::testing::TestWithParam<Sweep> {};
 
 TEST_P(CurveSweep, StaysWithinItsProofOrNamesTheProblem) {
   const ForwardKinematics arm = GetParam().arm();
-  const JointLimits range = range_of(arm);
+  const JointLimits range = testing::range_of(arm);
   InsertionOptions options;
   options.hold = GetParam().hold;
   unsigned inserted = 0;
@@ -79,7 +32,7 @@ TEST_P(CurveSweep, StaysWithinItsProofOrNamesTheProblem) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
     const JointVector start = 0.6 * testing::random_joints(random, range);
-    const auto curve = random_curve(arm, random, start, options.hold);
+    const auto curve = testing::random_curve(arm, random, start, options.hold);
     // Every tenth curve on 1000 places of every piece, the others on fewer; some tolerances tight.
     options.position_tolerance = seed % 7 == 0 ? 1e-7 : 5e-5;
     try {

@@ -6,8 +6,10 @@
 #include <random>
 #include <vector>
 
+#include "path/teaching_arms.hpp"
 #include "viapoint/core/units.hpp"
 #include "viapoint/kinematics/forward_kinematics.hpp"
+#include "viapoint/path/insertion.hpp"
 #include "viapoint/path/spline.hpp"
 #include "viapoint/path/task_curve.hpp"
 
@@ -82,6 +84,52 @@ inline std::unique_ptr<TaskCurve> helix(const Pose& from, const Eigen::Vector3d&
                                    : Eigen::Vector3d::Zero();
   auto orientation = std::make_unique<SteadyTurn>(from.linear(), rate);
   return std::make_unique<ToolCurve>(std::move(position), std::move(orientation));
+}
+
+/// Joint limits of the size that arms have.
+inline JointLimits range_of(const ForwardKinematics& arm) {
+  JointVector most(arm.joints());
+  for (int i = 0; i < arm.joints(); ++i) {
+    most[i] = arm.type(i) == JointType::kPrismatic ? 0.6 : 2.4;
+  }
+  return symmetric_limits(most);
+}
+
+/// A curve of one of five kinds from where the arm stands; small enough that many can be followed.
+inline std::unique_ptr<TaskCurve> random_curve(const ForwardKinematics& arm, std::mt19937& random,
+                                               const JointVector& start, Hold hold) {
+  const Pose from = arm.pose(start);
+  const bool oriented = hold == Hold::kPose && arm.joints() >= 6;
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  const Eigen::Vector3d center = from.translation() + random_vector(random, 0.05);
+  const Eigen::Vector3d axis = arm.joints() >= 6 || hold == Hold::kPosition
+                                   ? random_vector(random, 1.0)
+                                   : Eigen::Vector3d::UnitZ();
+  const double angle = (unit(random) < 0.5 ? -1.0 : 1.0) * (0.2 + 6.5 * unit(random));
+  switch (random() % 5) {
+    case 0:
+      return helix(from, center, axis, angle, 0.0, false);
+    case 1:
+      return helix(from, center, axis, angle, 0.03 * unit(random), hold == Hold::kPose);
+    case 2: {
+      const auto poses = poses_on_a_walk(arm, random, start, 2 + random() % 6, 0.06);
+      return spline_through(poses, 3, oriented);
+    }
+    case 3: {
+      const auto poses = poses_on_a_walk(arm, random, start, 2 + random() % 6, 0.06);
+      return spline_through(poses, 5, oriented);
+    }
+    default: {
+      const auto poses = poses_on_a_walk(arm, random, start, 5 + random() % 5, 0.06);
+      double length = 0.0;
+      for (size_t k = 1; k < poses.size(); ++k) {
+        length += (poses[k].translation() - poses[k - 1].translation()).norm();
+      }
+      return std::make_unique<ToolCurve>(
+          std::make_unique<SplineCurve>(b_spline_path(positions_of(poses), 3, length)),
+          std::make_unique<SteadyTurn>(from.linear(), Eigen::Vector3d::Zero()));
+    }
+  }
 }
 
 }  // namespace viapoint::testing

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "planning/planner_fixture.hpp"
+#include "viapoint/kinematics/inverse_kinematics.hpp"
 
 namespace viapoint {
 namespace {
@@ -362,7 +363,7 @@ TEST(CurveMoves, TellAnArmOfFourAxesWhatItCannotHold) {
   const Vector3d at = scara->forward().pose(start).translation();
   Script flat(*scara, start);
   TurnMove move;
-  move.center = at + Vector3d(0.03, 0.0, 0.0);
+  move.center = at - 0.03 * Vector3d(at.x(), at.y(), 0.0).normalized();
   move.axis = Vector3d::UnitZ();
   move.angle = 2.0 * kPi;
   flat.add(move);
@@ -376,7 +377,32 @@ TEST(CurveMoves, TellAnArmOfFourAxesWhatItCannotHold) {
   tilted.add(move);
   const Problem problem = only_problem(scara, tilted.program());
   EXPECT_EQ(problem.code, ErrorCode::kUncontrolled);
-  EXPECT_NE(problem.message.find("rotation about x"), std::string::npos) << problem.message;
+  EXPECT_NE(problem.message.find("cannot hold rotation about x"), std::string::npos)
+      << problem.message;
+  EXPECT_NE(problem.message.find("can hold there: x, y, z, rotation about z"), std::string::npos)
+      << problem.message;
+}
+
+TEST(CurveMoves, NameTheBranchWhereTheEndHasAnother) {
+  const RobotPtr puma = robot("puma560");
+  const JointVector end = degrees({10, 20, 5, 20, 45, 0});
+  const auto branches = puma->inverse().solve_all(puma->forward().pose(end));
+  const Pose via = moved(*puma, degrees({5, 23, 2, 17, 47, 5}), {0.0, 0.0, 0.03});
+  int others = 0;
+  for (const JointVector& q : branches) {
+    Script script(*puma, home());
+    script.add(CircMove{PoseTarget{via}, JointTarget{q}});
+    const Report report = MotionPlanner(puma).check(script.program());
+    if ((q - end).cwiseAbs().maxCoeff() < 1e-3) {
+      EXPECT_TRUE(report.ok()) << report.describe();
+      continue;
+    }
+    ++others;
+    ASSERT_FALSE(report.ok());
+    EXPECT_EQ(report.problems[0].code, ErrorCode::kBranchChange);
+    EXPECT_NE(report.problems[0].describe().find("movej"), std::string::npos);
+  }
+  EXPECT_GT(others, 0);
 }
 
 TEST(CurveMoves, GoOnFromTheirGoalAfterAFault) {
