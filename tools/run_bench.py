@@ -1,8 +1,9 @@
 """Measure viapoint on this machine and print tables.
 
 Subjects: ``tick`` (one cycle of the interpolator), ``plan`` (planning a move), ``certificate``
-(proving a motion), all three in C++ by viapoint-bench; ``sample`` (states of a motion into numpy
-arrays) in Python; ``profiles`` (state to state) beside Ruckig. Each has its place in tools/benches.
+(proving a motion), ``insertion`` (tool curves as joints, every proof checked), all in C++ by
+viapoint-bench; ``sample`` (states of a motion into numpy arrays) in Python; ``profiles`` (state to
+state) beside Ruckig. Each has its place in tools/benches.
 """
 
 import argparse

@@ -9,13 +9,14 @@ namespace {
 
 constexpr std::string_view kUsage =
     "usage: viapoint-bench tick [TICKS] | plan [PROGRAMS] | certificate [PROGRAMS] |\n"
-    "                      walk [PATHS] | kinematics [POSES] | all\n"
+    "                      walk [PATHS] | insertion [PROBLEMS] | kinematics [POSES] | all\n"
     "Prints one JSON object a line; times as its keys say.\n";
 
 constexpr int kTicks = 1'000'000;
 constexpr int kPrograms = 100;
 constexpr int kPoses = 1'000'000;
 constexpr int kPaths = 20;
+constexpr int kProblems = 1000;
 
 int count_of(int argc, char** argv, int otherwise) {
   if (argc < 3) return otherwise;
@@ -28,6 +29,7 @@ int count_of(int argc, char** argv, int otherwise) {
 int default_count(std::string_view command) {
   if (command == "tick") return kTicks;
   if (command == "kinematics") return kPoses;
+  if (command == "insertion") return kProblems;
   return command == "walk" ? kPaths : kPrograms;
 }
 
@@ -50,6 +52,8 @@ int main(int argc, char** argv) {
       bench_certificate(count);
     } else if (command == "walk") {
       bench_walk(count);
+    } else if (command == "insertion") {
+      bench_insertion(count);
     } else if (command == "kinematics") {
       bench_kinematics(count);
     } else if (command == "all" && argc == 2) {
@@ -58,6 +62,7 @@ int main(int argc, char** argv) {
       bench_plan(kPrograms);
       bench_certificate(kPrograms);
       bench_walk(kPaths);
+      bench_insertion(kProblems);
     } else {
       std::cerr << kUsage;
       return 2;

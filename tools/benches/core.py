@@ -6,9 +6,16 @@ from pathlib import Path
 
 from benches.tables import Row
 
-SUBJECTS = ("tick", "plan", "certificate", "walk", "kinematics")
+SUBJECTS = ("tick", "plan", "certificate", "walk", "insertion", "kinematics")
 # What a quick look measures: enough to see the order of magnitude.
-QUICK = {"tick": 100_000, "plan": 10, "certificate": 10, "walk": 3, "kinematics": 10_000}
+QUICK = {
+    "tick": 100_000,
+    "plan": 10,
+    "certificate": 10,
+    "walk": 3,
+    "insertion": 20,
+    "kinematics": 10_000,
+}
 
 
 def read_lines(text: str) -> list[Row]:
