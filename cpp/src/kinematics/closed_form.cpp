@@ -43,7 +43,7 @@ Elbow bend_elbow(double a, double b, double reach) {
 
 ShoulderBranches turn_shoulder(double x, double y, double side, double held) {
   ShoulderBranches found;
-  const double radius = std::hypot(x, y);
+  const double radius = std::sqrt(x * x + y * y);
   const double inside = radius - std::abs(side);
   if (inside < -kBoundary) {
     found.out_of_reach = -inside;

@@ -11,8 +11,7 @@ namespace {
 
 /// Where all these axes meet, if they do.
 std::optional<Eigen::Vector3d> meeting_of(std::span<const Screw> joints) {
-  auto point =
-      nearest_point(joints[0].origin, joints[0].axis, joints[1].origin, joints[1].axis);
+  auto point = nearest_point(joints[0].origin, joints[0].axis, joints[1].origin, joints[1].axis);
   if (!point) return std::nullopt;
   for (const Screw& joint : joints) {
     if (joint.type != JointType::kRevolute) return std::nullopt;

@@ -96,7 +96,7 @@ void SphericalWrist::solve_wrist(const Eigen::Matrix3d& before, const Eigen::Vec
   // What is left for the wrist, in its own frame: N = Rz(q4) Ry(q5 + tilt) Rz(q6).
   const Eigen::Matrix3d n =
       rotation_s_wrist_.transpose() * about_y(-(arm[1] + elbow_sign_ * arm[2])) * before;
-  const double sine = std::hypot(n(0, 2), n(1, 2));
+  const double sine = std::sqrt(n(0, 2) * n(0, 2) + n(1, 2) * n(1, 2));
 
   // With q4 known the other two follow without loss, however small the sine:
   // Rz(−q4) N = Ry(θ) Rz(q6), whose middle row is (sin q6, cos q6, 0).

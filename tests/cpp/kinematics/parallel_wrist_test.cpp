@@ -74,30 +74,6 @@ TEST(ParallelWrist, AtTheWristSingularityAnyNearIsServed) {
   }
 }
 
-TEST(ParallelWrist, CrossesTheWristSingularityWithoutAJump) {
-  const RobotPtr robot = arm("ur5e");
-  std::mt19937_64 generator(53);
-  constexpr int kSteps = 200;
-  for (int path = 0; path < 100; ++path) {
-    SCOPED_TRACE(path);
-    JointVector start = 0.4 * random_joints(*robot, generator);
-    JointVector end = start + 0.05 * random_joints(*robot, generator);
-    start[2] = 1.0;
-    end[2] = 1.3;
-    start[4] = -0.3;
-    end[4] = 0.3;
-    JointVector q = start;
-    JointVector before = start;
-    for (int step = 1; step <= kSteps; ++step) {
-      const JointVector goal = start + (end - start) * (static_cast<double>(step) / kSteps);
-      const JointVector expected = 2.0 * q - before;
-      before = q;
-      ASSERT_NO_THROW(q = robot->inverse().solve_near(robot->fk(goal), expected));
-      ASSERT_LT((q - goal).lpNorm<Eigen::Infinity>(), 1e-5) << "step " << step;
-    }
-  }
-}
-
 TEST(ParallelWrist, NamesItsSingularities) {
   const RobotPtr robot = arm("ur5e");
   JointVector q(6);
@@ -119,34 +95,6 @@ TEST(ParallelWrist, NamesItsSingularities) {
     EXPECT_LT(found.manipulability, 1e-3);
   }
   EXPECT_TRUE(shoulder_found);
-}
-
-TEST(ParallelWrist, RecognisesArmsWithEveryOffsetAndOrientation) {
-  for (unsigned seed = 0; seed < 300; ++seed) {
-    SCOPED_TRACE(seed);
-    std::mt19937_64 generator(seed);
-    std::uniform_real_distribution<double> unit(-1.0, 1.0);
-    RobotDescription description = load_description(VIAPOINT_TEST_ROBOTS "/ur5e.yaml");
-    auto& chain = description.chain;
-    chain[0].before.linear() =
-        rotation_exp(Eigen::Vector3d(unit(generator), unit(generator), unit(generator)));
-    chain[1].before.translation() += Eigen::Vector3d(0.2 * unit(generator), 0.0, 0.0);
-    chain[2].before.translation() += Eigen::Vector3d(0.0, 0.1 * unit(generator), 0.1);
-    chain[4].before.translation() += Eigen::Vector3d(0.05 * unit(generator), 0.0, 0.0);
-    for (ChainJoint& joint : chain) {
-      if (unit(generator) > 0.0) joint.axis = -joint.axis;
-    }
-    description.tool.linear() =
-        rotation_exp(Eigen::Vector3d(unit(generator), unit(generator), unit(generator)));
-    description.tool.translation() = Eigen::Vector3d(0.1, 0.2 * unit(generator), 0.3);
-    const RobotPtr robot = RobotModel::make(description);
-    ASSERT_NE(robot->inverse().family().find("parallel"), std::string::npos);
-    for (int problem = 0; problem < 20; ++problem) {
-      const JointVector q = random_joints(*robot, generator);
-      const Pose pose = robot->fk(q);
-      ASSERT_LT((robot->inverse().solve_near(pose, q) - q).lpNorm<Eigen::Infinity>(), 1e-6);
-    }
-  }
 }
 
 TEST(ParallelWrist, MeasuresHowFarItIsOutOfReach) {
