@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <memory>
 
+#include "viapoint/core/nonblocking.hpp"
 #include "viapoint/realtime/interpolator.hpp"
 #include "viapoint/realtime/motion_log.hpp"
-#include "viapoint/core/nonblocking.hpp"
 #include "viapoint/trajectory/trajectory.hpp"
 
 namespace viapoint {

@@ -22,8 +22,8 @@
 #include <array>
 
 #include "viapoint/core/joint_limits.hpp"
-#include "viapoint/realtime/lookahead.hpp"
 #include "viapoint/core/nonblocking.hpp"
+#include "viapoint/realtime/lookahead.hpp"
 
 namespace viapoint {
 
