@@ -115,10 +115,10 @@ void bench_kinematics(int poses) {
   }
   for (const std::string name : {"puma560", "ur5e"}) {
     RobotDescription description = load_description(name);
-    // Axis 3 out of true, as a calibration finds it: no closed form.
+    // Axis 3 as a calibration finds it: the UR then has no closed form.
     description.chain[2].before.linear() =
         description.chain[2].before.linear() * rotation_exp(Eigen::Vector3d(1e-4, 0.0, 0.0));
-    nearest_of(name + " numerical", *RobotModel::make(description), std::max(1, poses / kSlower));
+    nearest_of(name + " out of true", *RobotModel::make(description), std::max(1, poses / kSlower));
   }
 }
 
