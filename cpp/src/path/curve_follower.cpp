@@ -180,7 +180,7 @@ std::array<bool, 6> CurveFollower::holds(const JointVector& q) const {
   constexpr double kIndependent = 1e-6;
   const Eigen::MatrixXd block = scaled(arm_.jacobian(arm_.frames(q)));
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(block, Eigen::ComputeThinU);
-  const Eigen::VectorXd values = svd.singularValues();
+  const Eigen::VectorXd& values = svd.singularValues();
   std::array<bool, 6> which{};
   for (Eigen::Index i = 0; i < coordinates_; ++i) {
     double within = 0.0;

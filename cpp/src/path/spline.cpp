@@ -193,9 +193,11 @@ PathPoint b_spline_point(std::span<const JointVector> control, std::span<const d
 std::vector<PathPoint> natural_spline(std::span<const JointVector> points,
                                       std::span<const double> at, int degree) {
   check_points(points, at, degree);
-  NaturalSystem system(points, at, degree);
+  // Through two points every parabola has f''' = 0: the straight line is the least of them.
+  const int used = points.size() == 2 ? 3 : degree;
+  NaturalSystem system(points, at, used);
   const Eigen::MatrixXd solution = system.solve();
-  const int m = (degree - 1) / 2;
+  const int m = (used - 1) / 2;
   const JointVector zero = JointVector::Zero(points[0].size());
   std::vector<PathPoint> knots;
   knots.reserve(points.size());

@@ -204,13 +204,12 @@ class Walk {
   }
 
   void go_on_from(const std::optional<Target>& goal) {
+    lost_ = !goal;
+    if (lost_) return;
     try {
-      lost_ = true;
-      if (!goal) return;
       at_ = builder_.resolve(*goal, at_);
-      lost_ = false;
     } catch (const MotionError&) {
-      // The target's own problem is in the report already.
+      lost_ = true;  // the target's own problem is in the report already
     }
   }
 

@@ -98,6 +98,18 @@ TEST_P(NaturalSpline, ReproducesStraightLines) {
   }
 }
 
+TEST_P(NaturalSpline, IsStraightThroughTwoPoints) {
+  for (unsigned seed = 0; seed < 2000; ++seed) {
+    SCOPED_TRACE(seed);
+    const Data data = random_data(seed, 2, 3, 3.0);
+    const JointVector slope = (data.points[1] - data.points[0]) / data.at[1];
+    for (const PathPoint& knot : natural_spline(data.points, data.at, GetParam())) {
+      ASSERT_LT((knot.q1 - slope).norm(), 1e-12 * slope.norm());
+      ASSERT_LT(knot.q2.norm() * data.at[1], 1e-11 * slope.norm());
+    }
+  }
+}
+
 TEST_P(NaturalSpline, BendsLessThanAnyOtherFunctionThroughThePoints) {
   // Adding any bump that vanishes at the points can only make ∫‖f^(m+1)‖² larger.
   const int degree = GetParam();
