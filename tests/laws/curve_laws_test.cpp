@@ -17,28 +17,31 @@ TEST_P(CurveLaws, DerivativesAreThoseOfTheValue) {
   const CurvePtr curve = GetParam().make();
   std::mt19937_64 random(11);
   const double step = 1e-5 * curve->length();
-  std::uniform_real_distribution<double> along(step, curve->length() - step);
+  std::uniform_real_distribution<double> along(2 * step, curve->length() - 2 * step);
   for (int i = 0; i < 500; ++i) {
     const double s = along(random);
     // Across a jump of the third derivative a difference is none of either side.
-    if (curve->last_break(s - step, s + step) < s + step) continue;
+    if (curve->last_break(s - 2 * step, s + 2 * step) < s + 2 * step) continue;
     const CurvePoint here = curve->at(s);
     const CurvePoint before = curve->at(s - step);
     const CurvePoint after = curve->at(s + step);
-    const auto expect_near = [&](const Eigen::Vector3d& derivative, const Eigen::Vector3d& from,
-                                 const Eigen::Vector3d& to) {
-      const Eigen::Vector3d difference = (to - from) / (2 * step);
+    const CurvePoint long_before = curve->at(s - 2 * step);
+    const CurvePoint long_after = curve->at(s + 2 * step);
+    // From the changes over two steps and over four, exact up to the fourth order.
+    const auto expect_near = [&](const Eigen::Vector3d& derivative, const Eigen::Vector3d& change,
+                                 const Eigen::Vector3d& far_change) {
+      const Eigen::Vector3d difference = (8.0 * change - far_change) / (12.0 * step);
       ASSERT_LE((derivative - difference).norm(),
                 1e-7 * (1.0 + derivative.norm()) / std::min(1.0, curve->length()));
     };
-    expect_near(here.p1, before.p, after.p);
-    expect_near(here.p2, before.p1, after.p1);
-    expect_near(here.p3, before.p2, after.p2);
-    expect_near(here.w1, before.w, after.w);
-    expect_near(here.w2, before.w1, after.w1);
+    expect_near(here.p1, after.p - before.p, long_after.p - long_before.p);
+    expect_near(here.p2, after.p1 - before.p1, long_after.p1 - long_before.p1);
+    expect_near(here.p3, after.p2 - before.p2, long_after.p2 - long_before.p2);
+    expect_near(here.w1, after.w - before.w, long_after.w - long_before.w);
+    expect_near(here.w2, after.w1 - before.w1, long_after.w1 - long_before.w1);
     // R' = [w]× R, by the rotation between two neighbours in the base frame.
-    expect_near(here.w, Eigen::Vector3d::Zero(),
-                rotation_log(after.rotation * before.rotation.transpose()));
+    expect_near(here.w, rotation_log(after.rotation * before.rotation.transpose()),
+                rotation_log(long_after.rotation * long_before.rotation.transpose()));
   }
 }
 

@@ -225,7 +225,7 @@ CurvePtr spline_led_along_its_tangent() {
   const std::vector<double> at = {0.0, 0.35, 0.8, 1.3, 1.8};
   auto position = std::make_unique<SplineCurve>(quintic_chain(natural_spline(points, at, 5), at));
   auto turn = std::make_unique<OrientationSpline>(
-      follow_tangent(*position, waypoints().front().linear(), 1e-3));
+      follow_tangent(*position, waypoints().front().linear(), 1e-4));
   return std::make_shared<ToolCurve>(std::move(position), std::move(turn));
 }
 
