@@ -12,6 +12,7 @@ highest = np.array(robot.limits.position_max)
 highest[0] = 40 * deg
 robot = robot.with_limits(position_max=highest)
 home = deg * [0, -90, 90, -90, -90, 0]
+rest = deg * [-30, -80, 100, -110, -90, 0]
 
 
 def hold(arm: vp.Arm, velocity: np.ndarray, seconds: float) -> None:
@@ -33,5 +34,5 @@ with vp.connect("sim://ur5e", robot=robot, start=home) as arm:
     while arm.jogging:
         time.sleep(0.01)
 
-    job = arm.run(vp.Program(robot, start=arm.setpoint, scale=0.5).movej(home))
-    print(f"{job.state} at home again")
+    job = arm.run(vp.Program(robot, start=arm.setpoint, scale=0.5).movej(rest))
+    print(f"{job.state} at rest")
