@@ -43,6 +43,7 @@ TEST_P(SevenJoints, GiveOneSolutionForEachConfiguration) {
   const RobotPtr robot = arm(GetParam());
   const InverseKinematics& inverse = robot->inverse();
   std::mt19937_64 generator(82);
+  int same_sides = 0;
   for (int problem = 0; problem < 100; ++problem) {
     SCOPED_TRACE(problem);
     const JointVector q = random_joints(*robot, generator);
@@ -56,8 +57,12 @@ TEST_P(SevenJoints, GiveOneSolutionForEachConfiguration) {
       ASSERT_TRUE(robot->limits().contains(each));
       ASSERT_LT(pose_distance(robot->fk(each), robot->fk(q)), 2e-9);
     }
-    ASSERT_TRUE(found || all.size() > 0);
+    ASSERT_FALSE(all.empty());
+    same_sides += found ? 1 : 0;
   }
+  // The redundancy is searched at places of its own, and a configuration that only lives between
+  // two of them is missed: 7 of 100 on the Panda, none on the iiwa.
+  EXPECT_GE(same_sides, 90);
 }
 
 TEST_P(SevenJoints, SolveSingularPoses) {

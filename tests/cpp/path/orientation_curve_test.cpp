@@ -102,12 +102,12 @@ TEST(OrientationSpline, MeetsKnotsWhateverTheirRates) {
                        random_vector(random, 5.0)});
     }
     const OrientationSpline spline(knots);
-    for (size_t k = 0; k < knots.size(); ++k) {
-      for (const double s : {std::nextafter(knots[k].s, 0.0), knots[k].s}) {
+    for (const OrientationKnot& knot : knots) {
+      for (const double s : {std::nextafter(knot.s, 0.0), knot.s}) {
         const OrientationPoint point = spline.at(std::max(s, 0.0));
-        ASSERT_LT(rotation_distance(point.rotation, knots[k].rotation), 1e-11);
-        ASSERT_LT((point.w - knots[k].w).norm(), 1e-9);
-        ASSERT_LT((point.w1 - knots[k].w1).norm(), 1e-7 * (1.0 + point.w2.norm()));
+        ASSERT_LT(rotation_distance(point.rotation, knot.rotation), 1e-11);
+        ASSERT_LT((point.w - knot.w).norm(), 1e-9);
+        ASSERT_LT((point.w1 - knot.w1).norm(), 1e-7 * (1.0 + point.w2.norm()));
       }
     }
   }

@@ -66,7 +66,8 @@ JointLimits random_limits(std::mt19937& random) {
 /// with the largest jerk), and the limits themselves.
 ::testing::AssertionResult is_legal(const JointLimits& limits, const Setpoint& from,
                                     const Setpoint& to) {
-  constexpr double kRounding = 1e-9, c = kSeconds;
+  constexpr double kRounding = 1e-9;
+  const double c = kSeconds;
   for (int i = 0; i < limits.joints(); ++i) {
     const double jerk = limits.jerk[i] * (1.0 + kRounding);
     const double a = to.qdd[i] - from.qdd[i];
