@@ -49,6 +49,8 @@ Course::Course(const JointPath& path, const JointLimits& limits)
     const double end = stretch.straight ? start : speed_at_end(piece);
     const double chord = piece.coefficients.bottomRows<5>().colwise().sum().norm();
     stretch.length = std::max({start, end, chord});
+    // One that comes back to where it began, at rest at both ends.
+    if (!(stretch.length > 0.0)) stretch.length = piece.coefficients.bottomRows<5>().norm();
     const double factor = stretch.length / piece.length;
     stretch.rate_limit = piece.rate_limit * factor;
     stretch.change_limit = piece.rate_change_limit * factor;

@@ -29,6 +29,9 @@ void require_valid(const JointPath& path, const JointLimits& limits) {
       throw MotionError(ErrorCode::kBadArgument,
                         "A path piece has coefficients or a length that are not finite.");
     }
+    if (!(piece.coefficients.bottomRows<5>().norm() > 0.0)) {
+      throw MotionError(ErrorCode::kBadArgument, "A path piece moves no joint.");
+    }
     if (!(piece.scale > 0.0 && piece.scale <= 1.0) || !(piece.rate_limit > 0.0) ||
         !(piece.rate_change_limit > 0.0)) {
       throw MotionError(
