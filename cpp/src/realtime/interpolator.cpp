@@ -120,8 +120,7 @@ RunState Interpolator::classify() const noexcept {
 
 void Interpolator::evaluate(double curvature, Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKING {
   const TrajectoryPiece& piece = motion_->pieces()[piece_];
-  const JointState path =
-      piece.at(std::clamp(now_.tau - motion_->start_of(piece_), 0.0, piece.duration));
+  const JointState path = piece.at(motion_->time_in(piece_, now_.tau));
   const double rate = now_.rate, slope = now_.slope;
   setpoint.q = path.q;
   setpoint.qd = path.qd * rate;

@@ -57,10 +57,8 @@ size_t Trajectory::piece_at(double t) const {
 
 JointState Trajectory::at(double t) const {
   if (pieces_.empty()) return JointState::zero(0);
-  // The end is that of the last piece to the last bit; t - start may be an ulp short of it.
-  if (t >= duration()) return pieces_.back().at(pieces_.back().duration);
   const size_t i = piece_at(t);
-  return pieces_[i].at(std::clamp(t - starts_[i], 0.0, pieces_[i].duration));
+  return pieces_[i].at(time_in(i, t));
 }
 
 }  // namespace viapoint

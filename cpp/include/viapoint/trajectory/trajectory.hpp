@@ -3,6 +3,7 @@
 /// real-time code includes.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -33,6 +34,12 @@ class Trajectory {
   [[nodiscard]] const std::vector<TrajectoryPiece>& pieces() const { return pieces_; }
   /// Nominal time at which piece i begins [s].
   [[nodiscard]] double start_of(size_t piece) const { return starts_[piece]; }
+  /// Time since piece i began, clamped to it [s]; from the end of the motion on all of its
+  /// duration, which t - start may miss by an ulp. Real-time: safe, O(1).
+  [[nodiscard]] double time_in(size_t piece, double t) const {
+    const double whole = pieces_[piece].duration;
+    return t >= duration_ ? whole : std::clamp(t - starts_[piece], 0.0, whole);
+  }
   /// What the pieces up to and with piece i do to the outputs, so that a cycle that passes over
   /// many pieces looks at one. Real-time: safe, O(1).
   [[nodiscard]] const OutputEffect& outputs_after(size_t piece) const { return outputs_[piece]; }
