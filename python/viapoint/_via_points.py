@@ -106,6 +106,7 @@ def via_cubics(
     shape, columns = point_columns(points)
     times = numbers_of(durations, "durations")
     if isinstance(velocities, str):
+        # Any text may come in; via_velocities refuses the words that it does not know.
         velocities = via_velocities(points, times, velocities)  # type: ignore[arg-type]
     _, rates = point_columns(velocities, "velocities")
     if np.shape(velocities) != columns.shape[:1] + shape:
