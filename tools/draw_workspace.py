@@ -7,6 +7,7 @@ import matplotlib as mpl
 mpl.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.patches import Circle
 
 import viapoint as vp
 
@@ -21,7 +22,7 @@ def main() -> None:
     measure = [scara.manipulability(q) for q in joints]
     drawn = above.scatter(points[:, 0], points[:, 1], c=measure, s=2)
     for radius in scara.reach([1.0, 0.0, 0.0], start=[0.0, 0.0, 0.25]).ravel():
-        above.add_patch(plt.Circle((0, 0), radius, fill=False, color="black", linewidth=0.8))
+        above.add_patch(Circle((0, 0), radius, fill=False, color="black", linewidth=0.8))
     above.set(title="SCARA from above", xlabel="x [m]", ylabel="y [m]", aspect="equal")
     figure.colorbar(drawn, ax=above, label="manipulability")
 
