@@ -1,9 +1,10 @@
 """Measure viapoint on this machine and print tables.
 
 Subjects: ``tick`` (one cycle of the interpolator), ``plan`` (planning a move), ``certificate``
-(proving a motion), ``insertion`` (tool curves as joints, every proof checked), all in C++ by
-viapoint-bench; ``sample`` (states of a motion into numpy arrays) in Python; ``profiles`` (state to
-state) beside Ruckig. Each has its place in tools/benches.
+(proving a motion), ``walk`` (timing of long paths), ``insertion`` (tool curves as joints, every
+proof checked), ``kinematics`` (inverse kinematics), all in C++ by viapoint-bench; ``sample``
+(states of a motion into numpy arrays) in Python; ``profiles`` (state to state) beside Ruckig.
+Each has its place in tools/benches.
 """
 
 import argparse
@@ -12,7 +13,7 @@ import json
 import sys
 from pathlib import Path
 
-from benches import core, profiles, sampling, tables
+from benches import core, documents, profiles, sampling, tables
 from benches.machine import ROOT, machine
 from benches.tables import Row
 
@@ -42,6 +43,9 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     parser.add_argument("subjects", nargs="*", metavar="SUBJECT", help=", ".join(SUBJECTS))
     parser.add_argument("--quick", action="store_true", help="fewer repetitions, rougher figures")
     parser.add_argument("--markdown", action="store_true", help="tables for a document")
+    parser.add_argument(
+        "--docs", action="store_true", help="measure all, and write the tables into README and docs"
+    )
     parser.add_argument("--json", type=Path, metavar="FILE", help="also write every figure there")
     parser.add_argument(
         "--problems",
@@ -58,6 +62,8 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     options = parser.parse_args(arguments)
     if unknown := [name for name in options.subjects if name not in SUBJECTS]:
         parser.error(f"no subject {', '.join(unknown)}; there are {', '.join(SUBJECTS)}")
+    if options.docs and options.subjects:
+        parser.error("--docs writes one run into all documents: name no subject")
     if options.problems is not None and (options.problems < 1 or options.subjects != ["profiles"]):
         parser.error("--problems goes with profiles alone, and is at least 1")
     return options
@@ -95,9 +101,14 @@ def main(arguments: list[str]) -> int:
             )
         figures += rows
         differences += others
-    if options.json:
+    if options.docs:
+        for document in documents.write(about, figures):
+            print(f"wrote {document.relative_to(ROOT)}")
+    results = [options.json] if options.json else []
+    results += [documents.RESULTS] if options.docs else []
+    for path in results:
         about["date"] = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
-        options.json.write_text(record(about, figures, differences), encoding="utf-8")
+        path.write_text(record(about, figures, differences), encoding="utf-8")
     return int(any(row["case"] == "failures" and row.get("value") for row in figures))
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 import run_bench
-from benches import core, profiles, tables
+from benches import core, documents, profiles, tables
 
 LINES = (
     '{"bench": "tick", "case": "full_speed", "ticks": 1000000, "p50_us": 0.51234, "checksum": 3}\n'
@@ -89,3 +89,22 @@ def test_the_same_index_gives_the_same_problem_and_its_end_is_within_its_limits(
         assert (rows == profiles.problem("any state", 3, index)).all()
         assert (abs(rows[:, 4]) <= rows[:, 7]).all()
         assert (abs(rows[:, 5]) <= rows[:, 9]).all()
+
+
+def test_documents_get_the_tables_they_ask_for(tmp_path: Path) -> None:
+    document = tmp_path / "figures.md"
+    document.write_text(
+        "Before.\n\n<!-- bench: machine -->\n<!-- /bench -->\n\n<!-- bench: tick -->\nold\n"
+        "<!-- /bench -->\n\n<!-- bench: plan -->\nkept\n<!-- /bench -->\nAfter.\n"
+    )
+    other = tmp_path / "other.md"
+    other.write_text("No figures here.\n")
+    rows = core.read_lines(LINES)
+    about = {"processor": "abacus"}
+    assert documents.write(about, rows, (document, other)) == [document]
+    text = document.read_text()
+    assert "Measured on: processor abacus.\n" in text
+    assert "| full_speed | 1000000 | 0.5123 |" in text
+    assert "old" not in text
+    assert "<!-- bench: plan -->\nkept\n<!-- /bench -->\nAfter.\n" in text
+    assert documents.write(about, rows, (document, other)) == []
