@@ -3,9 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <nlohmann/json.hpp>
 
+#include "golden.hpp"
 #include "kinematics/arms.hpp"
 #include "viapoint/core/error.hpp"
 #include "viapoint/core/units.hpp"
@@ -14,28 +13,12 @@
 namespace viapoint {
 namespace {
 
-nlohmann::json golden() {
-  std::ifstream file(VIAPOINT_TEST_DATA "/golden.json");
-  return nlohmann::json::parse(file);
-}
-
 JointVector joints_of(const nlohmann::json& degrees) {
   JointVector q(static_cast<Eigen::Index>(degrees.size()));
   for (size_t i = 0; i < degrees.size(); ++i) {
     q[static_cast<Eigen::Index>(i)] = degrees[i].get<double>() * kDegree;
   }
   return q;
-}
-
-Pose pose_of(const nlohmann::json& rows) {
-  Pose pose;
-  for (int row = 0; row < 4; ++row) {
-    for (int column = 0; column < 4; ++column) {
-      pose.matrix()(row, column) =
-          rows[static_cast<size_t>(row)][static_cast<size_t>(column)].get<double>();
-    }
-  }
-  return pose;
 }
 
 /// The PUMA under other limits.
@@ -50,11 +33,11 @@ RobotPtr puma(double low_degrees, double high_degrees) {
 TEST(SphericalWrist, ForwardKinematicsOfThePrintedJointsIsGolden) {
   // Textbook §3.
   const RobotPtr robot = arm("puma560");
-  const auto data = golden()["puma560"];
+  const auto data = golden("puma560");
   for (const char* point : {"A", "B", "C"}) {
     SCOPED_TRACE(point);
     const JointVector q = joints_of(data["joints_deg"][point]);
-    const Pose expected = pose_of(data["fk_of_joints"][point]);
+    const Pose expected = golden_pose(data["fk_of_joints"][point]);
     EXPECT_LT(pose_distance(robot->fk(q), expected), 1e-9);
     EXPECT_LT(pose_distance(robot->forward().pose(q), expected), 1e-9);
   }
@@ -63,11 +46,11 @@ TEST(SphericalWrist, ForwardKinematicsOfThePrintedJointsIsGolden) {
 TEST(SphericalWrist, FindsThePrintedJointsAgain) {
   // Textbook §3.
   const RobotPtr robot = arm("puma560");
-  const auto data = golden()["puma560"];
+  const auto data = golden("puma560");
   for (const char* point : {"A", "B", "C"}) {
     SCOPED_TRACE(point);
     const JointVector q = joints_of(data["joints_deg"][point]);
-    const Pose pose = pose_of(data["fk_of_joints"][point]);
+    const Pose pose = golden_pose(data["fk_of_joints"][point]);
     double nearest = 1e300;
     for (const JointVector& solution : robot->inverse().solve_all(pose)) {
       nearest = std::min(nearest, (solution - q).lpNorm<Eigen::Infinity>());
@@ -78,7 +61,7 @@ TEST(SphericalWrist, FindsThePrintedJointsAgain) {
 }
 
 TEST(SphericalWrist, LimitsOfThePumaAreGolden) {
-  const JointVector limits = joints_of(golden()["puma560"]["limits_deg"]);
+  const JointVector limits = joints_of(golden("puma560")["limits_deg"]);
   const RobotPtr robot = arm("puma560");
   EXPECT_LT((robot->limits().position_max - limits).lpNorm<Eigen::Infinity>(), 1e-15);
   EXPECT_LT((robot->limits().position_min + limits).lpNorm<Eigen::Infinity>(), 1e-15);
@@ -87,9 +70,9 @@ TEST(SphericalWrist, LimitsOfThePumaAreGolden) {
 TEST(SphericalWrist, TheRoundedPoseBNeedsSomewhatOtherJoints) {
   // Textbook §3: the projected B differs from the printed joints by 0.85° in joints 4 and 6.
   const RobotPtr robot = arm("puma560");
-  const auto data = golden()["puma560"];
+  const auto data = golden("puma560");
   const JointVector printed = joints_of(data["joints_deg"]["B"]);
-  const Pose b = checked_pose(pose_of(data["poses_m"]["B"]).matrix()).pose;
+  const Pose b = checked_pose(golden_pose(data["poses_m"]["B"]).matrix()).pose;
   const JointVector q = robot->inverse().solve_near(b, printed);
   const JointVector change = (q - printed).cwiseAbs() / kDegree;
   EXPECT_NEAR(std::max(change[3], change[5]), 0.85, 0.05);

@@ -3,36 +3,20 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
-#include <nlohmann/json.hpp>
 #include <random>
-#include <string>
 #include <vector>
 
+#include "golden.hpp"
 #include "viapoint/core/error.hpp"
 #include "viapoint/core/units.hpp"
 
 namespace viapoint {
 namespace {
 
-nlohmann::json puma() {
-  std::ifstream file(std::string(VIAPOINT_TEST_DATA) + "/golden.json");
-  return nlohmann::json::parse(file).at("puma560");
-}
-
-Pose pose_of(const nlohmann::json& rows) {
-  Pose pose = Pose::Identity();
-  for (int i = 0; i < 4; ++i) {
-    for (int j = 0; j < 4; ++j) {
-      pose.matrix()(i, j) = rows[static_cast<size_t>(i)][static_cast<size_t>(j)].get<double>();
-    }
-  }
-  return pose;
-}
-
 DriveMotion reference_motion() {
-  const nlohmann::json poses = puma().at("fk_of_joints");
-  const std::array points{pose_of(poses.at("A")), pose_of(poses.at("B")), pose_of(poses.at("C"))};
+  const nlohmann::json poses = golden("puma560").at("fk_of_joints");
+  const std::array points{golden_pose(poses.at("A")), golden_pose(poses.at("B")),
+                          golden_pose(poses.at("C"))};
   return DriveMotion(points, std::array{0.5, 0.5}, 0.2);
 }
 
@@ -50,12 +34,13 @@ TEST(DriveMotion, GoldenTextbookSection3CartesianMove) {
   const DriveMotion motion = reference_motion();
   ASSERT_EQ(motion.parts(), 3u);
   EXPECT_EQ(motion.duration(), 1.0);
-  const nlohmann::json rows = puma().at("cartesian_move");
+  const nlohmann::json rows = golden("puma560").at("cartesian_move");
   ASSERT_EQ(rows.size(), 9u);
   for (const auto& row : rows) {
     const double t = row.at("t").get<double>() + 0.5;
-    EXPECT_LT((motion.at(t).pose.matrix() - pose_of(row.at("pose")).matrix()).cwiseAbs().maxCoeff(),
-              1e-12)
+    EXPECT_LT(
+        (motion.at(t).pose.matrix() - golden_pose(row.at("pose")).matrix()).cwiseAbs().maxCoeff(),
+        1e-12)
         << "t = " << t;
   }
 }

@@ -4,11 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <nlohmann/json.hpp>
 #include <random>
-#include <string>
 
+#include "golden.hpp"
 #include "planning/planner_fixture.hpp"
 #include "viapoint/path/drive_transform.hpp"
 
@@ -21,21 +19,6 @@ using testing_planner::puma_b;
 using testing_planner::puma_c;
 using testing_planner::robot;
 using testing_planner::Script;
-
-nlohmann::json puma_golden() {
-  std::ifstream file(std::string(VIAPOINT_TEST_DATA) + "/golden.json");
-  return nlohmann::json::parse(file).at("puma560");
-}
-
-Pose pose_of(const nlohmann::json& rows) {
-  Pose pose = Pose::Identity();
-  for (int i = 0; i < 4; ++i) {
-    for (int j = 0; j < 4; ++j) {
-      pose.matrix()(i, j) = rows[static_cast<size_t>(i)][static_cast<size_t>(j)].get<double>();
-    }
-  }
-  return pose;
-}
 
 /// The reference job of the textbook, §3.
 TimedMove reference_move(const RobotModel& arm, TimedSpace space) {
@@ -71,7 +54,7 @@ TEST(TimedPlan, GoldenTextbookSection3JointMove) {
   const PlannedMotion motion = planned(*arm, reference_move(*arm, TimedSpace::kJoint), puma_a());
   ASSERT_EQ(motion.trajectory.pieces().size(), 3u);
   EXPECT_EQ(motion.trajectory.duration(), 1.0);
-  const nlohmann::json rows = puma_golden().at("joint_move_deg");
+  const nlohmann::json rows = golden("puma560").at("joint_move_deg");
   ASSERT_EQ(rows.size(), 9u);
   for (const auto& row : rows) {
     const JointState state = motion.trajectory.at(row.at("t").get<double>() + 0.5);
@@ -90,10 +73,10 @@ TEST(TimedPlan, GoldenTextbookSection3CartesianMove) {
   const PlannedMotion motion = planned(*arm, move, puma_a());
   ASSERT_FALSE(motion.trajectory.pieces().empty()) << motion.report.describe();
   EXPECT_NEAR(motion.trajectory.duration(), 1.0, 1e-12);
-  const nlohmann::json rows = puma_golden().at("cartesian_move");
+  const nlohmann::json rows = golden("puma560").at("cartesian_move");
   ASSERT_EQ(rows.size(), 9u);
   for (const auto& row : rows) {
-    const Pose wanted = pose_of(row.at("pose"));
+    const Pose wanted = golden_pose(row.at("pose"));
     const Pose is = arm->fk(motion.trajectory.at(row.at("t").get<double>() + 0.5).q);
     EXPECT_LT((wanted.translation() - is.translation()).norm(), 1e-6) << row.at("t");
     EXPECT_LT(rotation_distance(wanted.linear(), is.linear()), 1e-6) << row.at("t");

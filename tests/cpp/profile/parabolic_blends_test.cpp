@@ -9,7 +9,7 @@
 #include <span>
 #include <string>
 
-#include "profile/golden.hpp"
+#include "golden.hpp"
 #include "profile/law_checks.hpp"
 #include "viapoint/core/error.hpp"
 

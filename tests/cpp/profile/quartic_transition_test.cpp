@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "profile/golden.hpp"
+#include "golden.hpp"
 #include "profile/law_checks.hpp"
 #include "viapoint/core/error.hpp"
 

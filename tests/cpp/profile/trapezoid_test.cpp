@@ -6,7 +6,7 @@
 #include <random>
 #include <string>
 
-#include "profile/golden.hpp"
+#include "golden.hpp"
 #include "profile/law_checks.hpp"
 #include "viapoint/core/error.hpp"
 
