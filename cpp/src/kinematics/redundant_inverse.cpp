@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <map>
 #include <tuple>
 #include <utility>
+
+#include "viapoint/core/scalar_minimum.hpp"
 
 namespace viapoint {
 namespace {
@@ -15,7 +18,8 @@ constexpr double kNearEnough = 0.35;  ///< a change of every joint below this is
 constexpr std::array kScans{16, 48};
 constexpr int kScan = 64;        ///< where the whole range counts
 constexpr int kFineScan = 1024;  ///< before a pose is given up
-constexpr int kRefinements = 6;
+constexpr int kRefinements = 8;
+constexpr double kResolution = 1e-4;  ///< of the stretch refined
 constexpr int kHalvings = 40;
 /// Within this share of its range from a limit a joint is crowded, and at the limit that counts as
 /// much as a move of half a radian.
@@ -105,37 +109,17 @@ RedundantInverse::Choice RedundantInverse::choose(const InverseTask& task, doubl
 RedundantInverse::Choice RedundantInverse::refine(const InverseTask& task, Choice best, double half,
                                                   const JointVector& reference,
                                                   const Cost& cost) const {
-  // Golden section (Kiefer 1953); a parameter without a solution counts as infinitely dear.
-  constexpr double kGolden = 0.6180339887498949;
+  // A parameter without a solution counts as infinitely dear.
   const auto [least, most] = form_->range(limits_);
-  double low = std::max(best.parameter - half, least);
-  double high = std::min(best.parameter + half, most);
+  const double low = std::max(best.parameter - half, least);
+  const double high = std::min(best.parameter + half, most);
   const auto look = [&](double parameter) {
     const Choice found = choose(task, parameter, reference, cost);
     if (found.cost < best.cost) best = found;
-    return found.cost;
+    return found.cost < kNone ? found.cost : std::numeric_limits<double>::infinity();
   };
-  double left = high - kGolden * (high - low);
-  double right = low + kGolden * (high - low);
-  double at_left = look(left);
-  double at_right = look(right);
-  for (int i = 0; i < kRefinements; ++i) {
-    // On a tie, as of two that have no solution, keep the side of the best.
-    const bool go_left = at_left != at_right ? at_left < at_right : best.parameter < right;
-    if (go_left) {
-      high = right;
-      right = left;
-      at_right = at_left;
-      left = high - kGolden * (high - low);
-      at_left = look(left);
-    } else {
-      low = left;
-      left = right;
-      at_left = at_right;
-      right = low + kGolden * (high - low);
-      at_right = look(right);
-    }
-  }
+  (void)refined_minimum(low, high, {best.parameter, best.cost}, kResolution * half, kRefinements,
+                        look);
   return best;
 }
 

@@ -41,7 +41,7 @@ class RedundantInverse final : public BranchInverse {
   /// The cheapest solution within the limits with this parameter.
   [[nodiscard]] Choice choose(const InverseTask& task, double parameter,
                               const JointVector& reference, const Cost& cost) const;
-  /// The cheapest between parameter ± half, by golden section from `best`.
+  /// The cheapest found between parameter ± half, from `best` on.
   [[nodiscard]] Choice refine(const InverseTask& task, Choice best, double half,
                               const JointVector& reference, const Cost& cost) const;
   /// The cheapest of `count` parameters over the whole range, refined.

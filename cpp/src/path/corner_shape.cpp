@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+
+#include "viapoint/core/scalar_minimum.hpp"
 
 namespace viapoint {
 namespace {
@@ -13,7 +16,9 @@ constexpr int kCutBisections = 50;
 /// How closely a cut meets the chord asked for, as a share of it; never above.
 constexpr double kChordSlack = 1e-12;
 constexpr int kCutSamples = 64;
-constexpr int kBlendSamples = 8, kGoldenSteps = 10;
+constexpr int kBlendSamples = 8, kRefinements = 8;
+/// To which the place nearest to the corner is looked for.
+constexpr double kResolution = 1e-6;
 /// A pairing that bounds the deviation this closely (times the least possible) needs no search.
 constexpr double kPairingSlack = 1.006;
 /// u* stays this far from the ends of the blend.
@@ -35,31 +40,6 @@ double value(const Polynomial6& polynomial, double u) {
 JointVector position(const JointPiece& piece, double u) {
   const auto row = [&piece](int k) { return piece.coefficients.row(k).transpose(); };
   return row(0) + u * (row(1) + u * (row(2) + u * (row(3) + u * (row(4) + u * row(5)))));
-}
-
-double golden_minimum(auto&& function, double low, double high) {
-  // Golden section (Kiefer 1953).
-  const double ratio = 0.5 * (std::sqrt(5.0) - 1.0);
-  double a = high - ratio * (high - low);
-  double b = low + ratio * (high - low);
-  double at_a = function(a);
-  double at_b = function(b);
-  for (int i = 0; i < kGoldenSteps; ++i) {
-    if (at_a < at_b) {
-      high = b;
-      b = a;
-      at_b = at_a;
-      a = high - ratio * (high - low);
-      at_a = function(a);
-    } else {
-      low = a;
-      a = b;
-      at_a = at_b;
-      b = low + ratio * (high - low);
-      at_b = function(b);
-    }
-  }
-  return at_a < at_b ? a : b;
 }
 
 }  // namespace
@@ -173,19 +153,16 @@ double CornerShape::nearest_to_corner(const MotionSpace& space) const {
   const auto distance = [&](double u) {
     return space.distance(position(blend_, u), legs_.corner());
   };
-  double best = 0.5;
-  double least = std::numeric_limits<double>::infinity();
+  ScalarMinimum best{0.5, std::numeric_limits<double>::infinity()};
   for (int k = 1; k < kBlendSamples; ++k) {
     const double u = static_cast<double>(k) / kBlendSamples;
     const double here = distance(u);
-    if (here < least) {
-      least = here;
-      best = u;
-    }
+    if (here < best.value) best = {u, here};
   }
   const double around = 1.0 / kBlendSamples;
-  return std::clamp(golden_minimum(distance, best - around, best + around), kEndMargin,
-                    1.0 - kEndMargin);
+  best =
+      refined_minimum(best.x - around, best.x + around, best, kResolution, kRefinements, distance);
+  return std::clamp(best.x, kEndMargin, 1.0 - kEndMargin);
 }
 
 CornerShape::Polynomial6 CornerShape::s_before(double u_star) const {

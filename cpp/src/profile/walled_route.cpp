@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "profile/mirror_images.hpp"
-#include "profile/scalar_minimum.hpp"
 #include "profile/touch.hpp"
+#include "viapoint/core/scalar_minimum.hpp"
 
 namespace viapoint {
 namespace {
