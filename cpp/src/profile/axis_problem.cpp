@@ -72,14 +72,23 @@ MoveStatus AxisProblem::set(const AxisState& start, const AxisState& end, const 
   if (!is_sound(limits)) return MoveStatus::kBadLimits;
   if (!is_finite(start) || !is_finite(end) || !std::isfinite(end.q - start.q))
     return MoveStatus::kBadState;
+  limits_ = limits;
+  has_up_ = has_down_ = is_closed_ = false;
+  lasting_ = -1.0;
+  target_q_ = end.q;
+  position_rounding_ = kPositionRounding * (std::abs(start.q) + std::abs(end.q));
+  rests_ = start.qd == 0.0 && start.qdd == 0.0 && end.qd == 0.0 && end.qdd == 0.0;
+  if (rests_) {  // within whatever limits
+    move.begin(start);
+    brake_time_ = 0.0;
+    from_ = move.end;
+    to_ = {end.q - start.q, 0.0, 0.0, 0.0};
+    return MoveStatus::kSolved;
+  }
   const MoveStatus status = end_status(end, limits);
   if (status != MoveStatus::kSolved) return status;
 
-  limits_ = limits;
-  has_up_ = has_down_ = false;
-  lasting_ = -1.0;
   move.begin(start);
-
   AxisState& now = move.end;
   if (now.qdd > limits.acceleration_max) {
     move.append(limits.jerk_min, (limits.acceleration_max - now.qdd) / limits.jerk_min);
@@ -103,23 +112,24 @@ MoveStatus AxisProblem::set(const AxisState& start, const AxisState& end, const 
   }
   brake_time_ = move.total;
   from_ = now;
-  target_q_ = end.q;
-  position_rounding_ = kPositionRounding * (std::abs(start.q) + std::abs(end.q));
   to_ = {end.q - now.q, end.qd, end.qdd, 0.0};
   return MoveStatus::kSolved;
 }
 
-void AxisProblem::build(bool upward) noexcept {
+UpwardLimits AxisProblem::limits_of(bool upward) const noexcept {
   const AxisLimits& l = limits_;
+  if (upward) {
+    return {l.velocity_max, l.acceleration_max, -l.acceleration_min, l.jerk_max, -l.jerk_min};
+  }
+  return {-l.velocity_min, -l.acceleration_min, l.acceleration_max, -l.jerk_min, l.jerk_max};
+}
+
+void AxisProblem::build(bool upward) noexcept {
   if (upward && !has_up_) {
-    up_ = UpwardFamily(
-        from_.qd, from_.qdd, to_.qd, to_.qdd,
-        {l.velocity_max, l.acceleration_max, -l.acceleration_min, l.jerk_max, -l.jerk_min});
+    up_ = UpwardFamily(from_.qd, from_.qdd, to_.qd, to_.qdd, limits_of(true));
     has_up_ = true;
   } else if (!upward && !has_down_) {
-    down_ = UpwardFamily(
-        -from_.qd, -from_.qdd, -to_.qd, -to_.qdd,
-        {-l.velocity_min, -l.acceleration_min, l.acceleration_max, -l.jerk_min, l.jerk_max});
+    down_ = UpwardFamily(-from_.qd, -from_.qdd, -to_.qd, -to_.qdd, limits_of(false));
     has_down_ = true;
   }
 }
@@ -178,6 +188,10 @@ void AxisProblem::append_velocity_change(AxisMove& move) noexcept {
 }
 
 double AxisProblem::solve_quickest() noexcept {
+  if (rests_ && std::abs(to_.q) > position_rounding_) {
+    is_closed_ = rest_motion_.solve(std::abs(to_.q), limits_of(to_.q > 0.0));
+    if (is_closed_) return quickest_.duration = rest_motion_.duration();
+  }
   build(true);
   const UpwardMember change = up_.quickest();
   const double ends = (std::abs(from_.qd) + std::abs(to_.qd)) * change.duration;
@@ -200,14 +214,13 @@ double AxisProblem::solve_quickest() noexcept {
 }
 
 void AxisProblem::append_quickest(AxisMove& move) const noexcept {
+  if (is_closed_) {
+    rest_motion_.write(from_.q, target_q_, to_.q > 0.0 ? 1.0 : -1.0, 1.0, move);
+    return;
+  }
   append(chain_of(quickest_is_upward_, quickest_), move);
   move.end = {target_q_, to_.qd, to_.qdd, 0.0};
   if (move.phases > 0) move.total = brake_time_ + quickest_.duration;
-}
-
-bool AxisProblem::is_rest_to_rest() const noexcept {
-  return brake_time_ == 0.0 && from_.qd == 0.0 && from_.qdd == 0.0 && to_.qd == 0.0 &&
-         to_.qdd == 0.0;
 }
 
 void AxisProblem::solve_lasting(double t) noexcept {
@@ -291,6 +304,12 @@ void AxisProblem::append_lasting(double duration, AxisMove& move) noexcept {
 
 /// The quickest motion in slow motion: lower rates only.
 void AxisProblem::append_slowed(double duration, AxisMove& move) const noexcept {
+  if (is_closed_) {
+    rest_motion_.write(from_.q, target_q_, to_.q > 0.0 ? 1.0 : -1.0, duration / quickest_.duration,
+                       move);
+    move.total = duration;
+    return;
+  }
   append_quickest(move);
   if (move.phases == 0) move.append(0.0, duration);
   const double rate = quickest_.duration / duration;

@@ -9,6 +9,7 @@
 
 #include <array>
 
+#include "profile/rest_motion.hpp"
 #include "profile/upward_family.hpp"
 #include "viapoint/profile/axis_move.hpp"
 
@@ -34,7 +35,7 @@ class AxisProblem {
   /// A motion that lasts `duration`, appended. @pre next_duration returned it
   void append_lasting(double duration, AxisMove& move) noexcept;
   /// From rest to rest, and nothing to come back from: the quickest can be slowed down to any.
-  [[nodiscard]] bool is_rest_to_rest() const noexcept;
+  [[nodiscard]] bool is_rest_to_rest() const noexcept { return rests_; }
 
  private:
   /// Phases of one member; accelerations at their starts are known without integration.
@@ -50,6 +51,7 @@ class AxisProblem {
     void add(double jerk, double qdd, double duration) noexcept;
   };
 
+  [[nodiscard]] UpwardLimits limits_of(bool upward) const noexcept;
   void build(bool upward) noexcept;
   [[nodiscard]] Chain chain_of(bool upward, const UpwardMember& member) const noexcept;
   static void append(const Chain& chain, AxisMove& move) noexcept;
@@ -63,6 +65,9 @@ class AxisProblem {
   double target_q_;
   double position_rounding_;
   double brake_time_;
+  bool rests_;      ///< at the start and at the end
+  bool is_closed_;  ///< the quickest is `rest_motion_`, of which `quickest_` has the duration only
+  RestMotion rest_motion_;
   UpwardFamily up_, down_;
   bool has_up_, has_down_;
   UpwardMember quickest_;
