@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <span>
 
 #include "profile/constant_jerk.hpp"
@@ -126,10 +127,10 @@ UpwardLimits AxisProblem::limits_of(bool upward) const noexcept {
 
 void AxisProblem::build(bool upward) noexcept {
   if (upward && !has_up_) {
-    up_ = UpwardFamily(from_.qd, from_.qdd, to_.qd, to_.qdd, limits_of(true));
+    std::construct_at(&up_, from_.qd, from_.qdd, to_.qd, to_.qdd, limits_of(true));
     has_up_ = true;
   } else if (!upward && !has_down_) {
-    down_ = UpwardFamily(-from_.qd, -from_.qdd, -to_.qd, -to_.qdd, limits_of(false));
+    std::construct_at(&down_, -from_.qd, -from_.qdd, -to_.qd, -to_.qdd, limits_of(false));
     has_down_ = true;
   }
 }
@@ -192,21 +193,24 @@ double AxisProblem::solve_quickest() noexcept {
     is_closed_ = rest_motion_.solve(std::abs(to_.q), limits_of(to_.q > 0.0));
     if (is_closed_) return quickest_.duration = rest_motion_.duration();
   }
-  build(true);
-  const UpwardMember change = up_.quickest();
-  const double ends = (std::abs(from_.qd) + std::abs(to_.qd)) * change.duration;
+  bool upward = to_.q > 0.0;  // a guess that is mostly right and saves the other family
+  const auto family = [this](bool up) -> const UpwardFamily& {
+    build(up);
+    return up ? up_ : down_;
+  };
+  const auto sign = [&] { return upward ? 1.0 : -1.0; };
+  quickest_ = family(upward).quickest();
+  const double ends = (std::abs(from_.qd) + std::abs(to_.qd)) * quickest_.duration;
   const double near = kWaySlack * (std::abs(to_.q) + ends) + position_rounding_;
-  bool upward = true;
-  quickest_ = change;
-  if (std::abs(to_.q - change.gain) > near) {
-    upward = to_.q > change.gain;
-    build(upward);
-    const bool before_gap = upward ? up_.reach(to_.q, change, quickest_)
-                                   : down_.reach(-to_.q, down_.quickest(), quickest_);
-    if (!before_gap) {
-      upward = upward ? to_.q >= up_.after_gap().gain : to_.q > -down_.after_gap().gain;
-      build(upward);
-      quickest_ = upward ? up_.reach_after_gap(to_.q) : down_.reach_after_gap(-to_.q);
+  const double missing = to_.q - sign() * quickest_.gain;
+  if (std::abs(missing) > near) {
+    const bool guessed = upward == (missing > 0.0);
+    upward = missing > 0.0;
+    const UpwardMember change = guessed ? quickest_ : family(upward).quickest();
+    if (!family(upward).reach(sign() * to_.q, change, quickest_)) {
+      // Inside the gap of gains; what is not after it is for the other family.
+      if (sign() * to_.q < family(upward).after_gap().gain) upward = !upward;
+      quickest_ = family(upward).reach_after_gap(sign() * to_.q);
     }
   }
   quickest_is_upward_ = upward;
