@@ -22,11 +22,7 @@ struct StateMotion {
   bool scalar = true;
 
   [[nodiscard]] AxisState at(const AxisMove& move, double t) const {
-    return t < move.total || move.total == duration ? move.at(t) : coasting(move, t - move.total);
-  }
-  /// A joint that has arrived before the others goes on at its end velocity.
-  [[nodiscard]] static AxisState coasting(const AxisMove& move, double since) {
-    return {move.end.q + since * move.end.qd, move.end.qd, 0.0, 0.0};
+    return t > move.total ? move.after_end(t - move.total) : move.at(t);
   }
 };
 
@@ -53,7 +49,7 @@ void for_each_part(const StateMotion& motion, const AxisMove& move, Visit visit)
   }
   if (motion.duration > move.total) {
     visit(move.total, motion.duration,
-          cubic(StateMotion::coasting(move, 0.0), motion.duration - move.total));
+          cubic(move.after_end(0.0), motion.duration - move.total));
   }
 }
 

@@ -255,8 +255,11 @@ MoveStatus StateToState::plan_line(std::span<const AxisState> start, std::span<c
 
 JointState StateToState::at(double t) const noexcept VIAPOINT_NONBLOCKING {
   JointState state = JointState::zero(joints_);
+  const double clamped = t < duration_ ? t : duration_;
   for (int i = 0; i < joints_; ++i) {
-    const AxisState s = axis(i).at(t);
+    const AxisMove& move = axis(i);
+    const AxisState s =
+        clamped > move.total ? move.after_end(clamped - move.total) : move.at(clamped);
     state.q[i] = s.q;
     state.qd[i] = s.qd;
     state.qdd[i] = s.qdd;

@@ -65,10 +65,7 @@ void Jog::wish(const JointVector& velocity, int cycles,
 AxisState Jog::state_of(const Axis& axis,
                         std::uint64_t cycles) const noexcept VIAPOINT_NONBLOCKING {
   const double t = static_cast<double>(cycles) * cycle_;
-  AxisState state = axis.law.at(t);
-  // A law that ends at speed goes on at it.
-  if (t > axis.law.total) state.q += state.qd * (t - axis.law.total);
-  return state;
+  return t > axis.law.total ? axis.law.after_end(t - axis.law.total) : axis.law.at(t);
 }
 
 void Jog::replan(int joint, bool stop) noexcept VIAPOINT_NONBLOCKING {

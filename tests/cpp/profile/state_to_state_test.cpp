@@ -156,6 +156,36 @@ TEST(StateToState, LeavesAxesToThemselvesWithoutSynchronization) {
   EXPECT_EQ(motion.duration(), slowest);
 }
 
+TEST(StateToState, LetsAnAxisThatHasArrivedGoOnAtItsEndVelocity) {
+  for (int seed = 0; seed < 2000; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937_64 random(static_cast<std::uint64_t>(seed));
+    const Requests all = random_requests(random, 3);
+    StateToStateOptions options;
+    options.synchronization = Synchronization::kNone;
+    StateToState motion;
+    ASSERT_EQ(motion.plan(all.start, all.end, all.limits, options), MoveStatus::kSolved);
+    for (const double t : {0.0, uniform(random, 0.0, motion.duration()), motion.duration(),
+                           2.0 * motion.duration()}) {
+      const JointState state = motion.at(t);
+      for (int i = 0; i < 3; ++i) {
+        const AxisMove& move = motion.axis(i);
+        const double over = std::min(t, motion.duration()) - move.total;
+        const AxisState& end = all.end[static_cast<size_t>(i)];
+        if (over > 0.0) {
+          EXPECT_EQ(state.q[i], end.q + over * end.qd);
+          EXPECT_EQ(state.qd[i], end.qd);
+          EXPECT_EQ(state.qdd[i], 0.0);
+        } else {
+          EXPECT_EQ(state.q[i], move.at(t).q);
+          EXPECT_EQ(state.qdd[i], move.at(t).qdd);
+        }
+      }
+    }
+    if (HasFailure()) return;
+  }
+}
+
 /// All axes' states are multiples of one direction, of both signs and very different lengths.
 Requests random_line(std::mt19937_64& random, std::vector<double>& direction) {
   Requests all;

@@ -68,6 +68,11 @@ struct AxisMove {
 
   /// State at t, clamped to [0, total].
   [[nodiscard]] AxisState at(double t) const noexcept VIAPOINT_NONBLOCKING;
+  /// The state that long after the end, for who goes on: at the end's velocity, without
+  /// acceleration. @param seconds >= 0
+  [[nodiscard]] AxisState after_end(double seconds) const noexcept VIAPOINT_NONBLOCKING {
+    return {end.q + seconds * end.qd, end.qd, 0.0, 0.0};
+  }
   /// The least and the greatest position; exact.
   struct Extent {
     double low, high;

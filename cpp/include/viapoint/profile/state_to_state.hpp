@@ -13,7 +13,7 @@ namespace viapoint {
 
 /// What the axes of one motion have in common.
 enum class Synchronization : unsigned char {
-  kNone,  ///< nothing: each is as quick as it can be, and rests in its end state
+  kNone,  ///< nothing: each is as quick as it can be, and goes on at its end velocity
   kTime,  ///< the duration: the shortest one that all axes have a motion of
   kLine,  ///< the way: all move along the straight line from start to end, scaled by one law
 };
@@ -43,7 +43,9 @@ class StateToState {
   [[nodiscard]] int culprit() const noexcept { return culprit_; }
   /// @pre 0 <= i < joints()
   [[nodiscard]] const AxisMove& axis(int i) const noexcept { return axes_[static_cast<size_t>(i)]; }
-  /// State at t, clamped to [0, duration()].
+  /// State at t, clamped to [0, duration()]. An axis that has arrived before the others (only under
+  /// kNone) goes on at its end velocity, without acceleration: it rests if it ended at rest, and if
+  /// not, position limits hold until its own end only.
   [[nodiscard]] JointState at(double t) const noexcept VIAPOINT_NONBLOCKING;
 
  private:
