@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <span>
 
-#include "profile/constant_jerk.hpp"
 #include "profile/mirror_images.hpp"
 
 namespace viapoint {
@@ -135,19 +133,14 @@ void AxisProblem::build(bool upward) noexcept {
   }
 }
 
-void AxisProblem::Chain::add(double jerk, double qdd, double duration) noexcept {
-  if (!(duration > 0.0)) return;
-  links[static_cast<size_t>(size++)] = {duration, jerk, qdd};
-}
-
-AxisProblem::Chain AxisProblem::chain_of(bool upward, const UpwardMember& m) const noexcept {
+PhaseChain AxisProblem::chain_of(bool upward, const UpwardMember& m) const noexcept {
   const UpwardFamily& family = upward ? up_ : down_;
   const double sign = upward ? 1.0 : -1.0;
   const double rising = upward ? limits_.jerk_max : limits_.jerk_min;
   const double falling = upward ? limits_.jerk_min : limits_.jerk_max;
   const double per_up = sign / rising, per_down = -sign / falling;
   const double first = family.first_peak(m), last = family.last_peak(m);
-  Chain chain;
+  PhaseChain chain;
   chain.add(rising, from_.qdd, (first - sign * from_.qdd) * per_up);
   chain.add(0.0, sign * first, family.first_hold(m));
   if (m.cruise > 0.0) {
@@ -162,23 +155,6 @@ AxisProblem::Chain AxisProblem::chain_of(bool upward, const UpwardMember& m) con
   chain.add(0.0, -sign * last, family.last_hold(m));
   chain.add(rising, -sign * last, (last + sign * to_.qdd) * per_up);
   return chain;
-}
-
-/// What is known without integration takes the place of the integrated.
-void AxisProblem::append(const Chain& chain, AxisMove& move) noexcept {
-  if (chain.size == 0) return;
-  move.append(chain.links[0].jerk, chain.links[0].duration);  // may prolong the brake's last
-  AxisState state = move.end;
-  for (int i = 1; i < chain.size; ++i) {
-    const auto& [duration, jerk, qdd] = chain.links[static_cast<size_t>(i)];
-    state.qdd = qdd;
-    state.qddd = jerk;
-    if (i == chain.cruise) state.qd = chain.top;
-    move.phase[static_cast<size_t>(move.phases++)] = {duration, state};
-    move.total += duration;
-    state = advanced(state, jerk, duration);
-  }
-  move.end = state;
 }
 
 void AxisProblem::append_velocity_change(AxisMove& move) noexcept {
@@ -264,27 +240,6 @@ double AxisProblem::next_duration(double duration) noexcept {
   return t > duration - brake_time_ ? brake_time_ + t : duration;
 }
 
-namespace {
-
-/// Lets the phases from `first` on follow one another to `target`. What is missing by rounding
-/// (two long ways that nearly cancel leave some) goes into the velocity of the longest, where it is
-/// rounding as well.
-void meet(double target, int first, AxisMove& move) noexcept {
-  const std::span<AxisMove::Phase> phases(move.phase.data() + first,
-                                          static_cast<size_t>(move.phases - first));
-  size_t longest = 1;  // the first begins at the start, to the last bit
-  double q = phases[0].from.q;
-  for (size_t i = 0; i < phases.size(); ++i) {
-    phases[i].from.q = q;
-    q = advanced(phases[i].from, phases[i].from.qddd, phases[i].duration).q;
-    if (i > longest && phases[i].duration > phases[longest].duration) longest = i;
-  }
-  phases[longest].from.qd += (target - q) / phases[longest].duration;
-  for (size_t i = longest + 1; i < phases.size(); ++i) phases[i].from.q += target - q;
-}
-
-}  // namespace
-
 void AxisProblem::append_lasting(double duration, AxisMove& move) noexcept {
   if (is_rest_to_rest()) {
     append_slowed(duration, move);
@@ -298,9 +253,8 @@ void AxisProblem::append_lasting(double duration, AxisMove& move) noexcept {
   } else if (share <= 0.0) {
     append(chain_of(false, least_), move);
   } else {
-    const int first = move.phases;
-    append_blend(share, chain_of(true, most_), chain_of(false, least_), move);
-    if (move.phases > first + 1) meet(target_q_, first, move);
+    append_blend(share, chain_of(true, most_), chain_of(false, least_),
+                 {target_q_, to_.qd, to_.qdd, 0.0}, move);
   }
   move.end = {target_q_, to_.qd, to_.qdd, 0.0};
   move.total = duration;
@@ -326,46 +280,6 @@ void AxisProblem::append_slowed(double duration, AxisMove& move) const noexcept 
   }
   move.end = {target_q_, 0.0, 0.0, 0.0};
   move.total = duration;
-}
-
-/// share · most + (1 − share) · least, state by state.
-void AxisProblem::append_blend(double share, const Chain& most, const Chain& least,
-                               AxisMove& move) const noexcept {
-  const double rest = 1.0 - share;
-  AxisState high = from_, low = from_, now = from_;
-  int i = 0, k = 0;
-  const auto enter = [](const Chain& chain, int index, AxisState& state) {
-    const Chain::Link& link = chain.links[static_cast<size_t>(index)];
-    if (index > 0) state.qdd = link.qdd;
-    if (index == chain.cruise) state.qd = chain.top;
-    return link.duration;
-  };
-  if (most.size == 0 || least.size == 0) return;
-  double high_left = enter(most, 0, high), low_left = enter(least, 0, low);
-  for (;;) {
-    const double high_jerk = most.links[static_cast<size_t>(i)].jerk;
-    const double low_jerk = least.links[static_cast<size_t>(k)].jerk;
-    const double step = std::min(high_left, low_left);
-    if (step > 0.0) {
-      now.qddd = share * high_jerk + rest * low_jerk;
-      move.phase[static_cast<size_t>(move.phases++)] = {step, now};
-      move.total += step;
-      high = advanced(high, high_jerk, step);
-      low = advanced(low, low_jerk, step);
-    }
-    high_left -= step;
-    low_left -= step;
-    if (high_left <= 0.0) {
-      if (++i == most.size) break;
-      high_left = enter(most, i, high);
-    }
-    if (low_left <= 0.0) {
-      if (++k == least.size) break;
-      low_left = enter(least, k, low);
-    }
-    now = {share * high.q + rest * low.q, share * high.qd + rest * low.qd,
-           share * high.qdd + rest * low.qdd, 0.0};
-  }
 }
 
 }  // namespace viapoint

@@ -7,8 +7,7 @@
 /// mirrored axis, and what lies between to convex combinations of the two.
 #pragma once
 
-#include <array>
-
+#include "profile/phase_chain.hpp"
 #include "profile/rest_motion.hpp"
 #include "profile/upward_family.hpp"
 #include "viapoint/profile/axis_move.hpp"
@@ -38,25 +37,9 @@ class AxisProblem {
   [[nodiscard]] bool is_rest_to_rest() const noexcept { return rests_; }
 
  private:
-  /// Phases of one member; accelerations at their starts are known without integration.
-  struct Chain {
-    struct Link {
-      double duration, jerk, qdd;
-    };
-    std::array<Link, 7> links;
-    int size = 0;
-    double top = 0.0;  ///< velocity of a cruise
-    int cruise = -1;   ///< its index
-
-    void add(double jerk, double qdd, double duration) noexcept;
-  };
-
   [[nodiscard]] UpwardLimits limits_of(bool upward) const noexcept;
   void build(bool upward) noexcept;
-  [[nodiscard]] Chain chain_of(bool upward, const UpwardMember& member) const noexcept;
-  static void append(const Chain& chain, AxisMove& move) noexcept;
-  void append_blend(double share, const Chain& most, const Chain& least,
-                    AxisMove& move) const noexcept;
+  [[nodiscard]] PhaseChain chain_of(bool upward, const UpwardMember& member) const noexcept;
   void append_slowed(double duration, AxisMove& move) const noexcept;
   void solve_lasting(double t) noexcept;
 
