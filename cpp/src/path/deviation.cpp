@@ -156,13 +156,14 @@ Deviation bound_deviation(const ForwardKinematics& arm, const JointPiece& piece,
 
 std::optional<Deviation> prove_deviation(const ForwardKinematics& arm, const JointPiece& piece,
                                          const TaskCurve& curve, double s0,
-                                         const Deviation& tolerance) {
+                                         const Deviation& tolerance, long& places) {
   const PieceDeviation local(arm, piece, curve, s0, std::isfinite(tolerance.angle));
   Deviation proven;
   std::vector<Stretch> open = {{0.5 * piece.length, 0.5 * piece.length, 0}};
   int stretches = 0;
   while (!open.empty()) {
     if (++stretches > kMostStretches) return std::nullopt;
+    ++places;
     const Stretch stretch = open.back();
     open.pop_back();
     const StretchDeviation found = local.over(stretch);

@@ -13,10 +13,11 @@ namespace viapoint {
 /// found on the way (at most the tolerance); nothing when it leaves it, or when no proof is found
 /// by a bounded search.
 /// An infinite angle tolerance leaves the rotation aside.
+/// @param places counts on: how many places of the piece were looked at
 [[nodiscard]] std::optional<Deviation> prove_deviation(const ForwardKinematics& arm,
                                                        const JointPiece& piece,
                                                        const TaskCurve& curve, double s0,
-                                                       const Deviation& tolerance);
+                                                       const Deviation& tolerance, long& places);
 
 /// The deviation at one s of the piece, not a bound.
 [[nodiscard]] Deviation deviation_at(const ForwardKinematics& arm, const JointPiece& piece,

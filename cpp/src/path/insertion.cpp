@@ -21,7 +21,13 @@ constexpr double kShortestStep = 1e-8;
 constexpr double kRateResidual = 1e-6;
 /// A quintic Hermite piece with exact ends errs like the sixth power of its length.
 constexpr double kErrorOrder = 6.0;
-constexpr size_t kMostPieces = 200000;
+constexpr size_t kMostPieces = 20000;
+/// Places of the curve that are looked at, at most: so many, and so many more for every piece. A
+/// piece takes 25 on average; the hardest of thousands of lines by a singular wrist took 1200.
+constexpr long kMostPlaces = 20000;
+constexpr long kMostPlacesAPiece = 200;
+/// What Newton's method for one knot counts as.
+constexpr long kPlacesAKnot = 8;
 /// Near a singularity joints whose axes line up may turn against each other without moving the
 /// tool, so the tool alone does not tell that they follow the curve. In one piece a free revolute
 /// joint sweeps this much at most [rad]: too little to come out on another turn or branch.
@@ -112,8 +118,8 @@ class Marcher {
       const double next = curve_.last_break(0.5 * (s_ + even), even);
       // Written so that NaN fails.
       if (!(next - s_ >= kShortestStep * length || next >= length)) fail();
-      if (!advance(next)) continue;
-      if (result_.pieces.size() > kMostPieces || far_beyond_limit()) fail();
+      refuse_endless_work();
+      if (advance(next) && far_beyond_limit()) fail();
     }
     if (crossing_) throw_limit_crossing(arm_, *crossing_, crossing_share_, options_);
     return std::move(result_);
@@ -163,6 +169,14 @@ class Marcher {
     throw_insertion_failure(follower_, curve_, here_.point, s_, options_);
   }
 
+  void refuse_endless_work() const {
+    const size_t pieces = result_.pieces.size();
+    const long most = kMostPlaces + kMostPlacesAPiece * static_cast<long>(pieces);
+    if (pieces <= kMostPieces && places_ <= most) return;
+    if (crossing_) throw_limit_crossing(arm_, *crossing_, crossing_share_, options_);
+    throw_endless_work(pieces, s_ / curve_.length(), options_);
+  }
+
   /// Tries the piece from here to `next`; shortens the step where it does not hold.
   bool advance(double next) {
     const double h = next - s_;
@@ -173,6 +187,7 @@ class Marcher {
       step_ = h * (std::isfinite(ahead) ? std::clamp(kMostSweep / ahead, 0.1, 0.8) : 0.1);
       return false;
     }
+    places_ += kPlacesAKnot;
     const std::optional<CurveFollower::Knot> knot = follower_.solve(next, guess);
     if (!knot || knot->rate_residual > kRateResidual) {
       step_ = 0.5 * h;
@@ -194,7 +209,8 @@ class Marcher {
       step_ = h * std::clamp(0.9 * std::pow(ratio, -1.0 / kErrorOrder), 0.1, 0.8);
       return false;
     }
-    const std::optional<Deviation> proven = prove_deviation(arm_, piece, curve_, s_, tolerance_);
+    const std::optional<Deviation> proven =
+        prove_deviation(arm_, piece, curve_, s_, tolerance_, places_);
     if (!proven) {
       step_ = 0.75 * h;
       return false;
@@ -250,6 +266,7 @@ class Marcher {
   size_t last_within_ = 0;  ///< pieces before the one that crosses
   double s_ = 0.0;
   double step_;
+  long places_ = 0;  ///< of the curve that were looked at
 };
 
 }  // namespace

@@ -198,6 +198,19 @@ void refuse_far_goal(const ForwardKinematics& arm, const JointLimits& limits,
   throw MotionError(std::move(problem));
 }
 
+void throw_endless_work(size_t pieces, double share, const InsertionOptions& options) {
+  Problem problem;
+  problem.code = ErrorCode::kBadArgument;
+  problem.message = format("the curve is too much work: %.0f pieces lead to %.2f %% of it within ",
+                           static_cast<double>(pieces), 100.0 * share) +
+                    format("%.3g mm and %.3g°", options.position_tolerance / kMillimetre,
+                           options.angle_tolerance / kDegree);
+  problem.share = share;
+  problem.value = static_cast<double>(pieces);
+  problem.ways_out = {"divide the curve into several moves", "give a larger tolerance"};
+  throw MotionError(std::move(problem));
+}
+
 void throw_limit_crossing(const ForwardKinematics& arm, const LimitCrossing& crossing, double share,
                           const InsertionOptions& options) {
   Problem problem;

@@ -19,6 +19,10 @@ namespace viapoint {
 void refuse_far_goal(const ForwardKinematics& arm, const JointLimits& limits,
                      const TaskCurve& curve, const JointVector& start, double factor);
 
+/// The march has taken more pieces, or more places in them, than a curve is worth (kBadArgument).
+/// @param share of the curve that they cover
+[[noreturn]] void throw_endless_work(size_t pieces, double share, const InsertionOptions& options);
+
 /// @param share of the curve where the limit is crossed
 [[noreturn]] void throw_limit_crossing(const ForwardKinematics& arm, const LimitCrossing& crossing,
                                        double share, const InsertionOptions& options);

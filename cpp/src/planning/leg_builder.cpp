@@ -17,6 +17,23 @@ namespace {
 
 /// How near a curve must come to the joints it was asked for [rad or m].
 constexpr double kSameBranch = 1e-3;
+/// So many ends of the wrist are tried at most. Wide position limits allow every branch on hundreds
+/// of turns of the wrist, and where the nearest of them lead nowhere, one more turn does not help.
+constexpr size_t kMostWristEnds = 32;
+
+/// The nearest ends whose joints from `wrist` on differ: the others follow the curve.
+std::vector<JointVector> distinct_by_wrist(const std::vector<JointVector>& ends,
+                                           Eigen::Index wrist) {
+  std::vector<JointVector> distinct;
+  for (const JointVector& end : ends) {
+    if (distinct.size() == kMostWristEnds) break;
+    const bool known = std::any_of(distinct.begin(), distinct.end(), [&](const JointVector& other) {
+      return (end - other).tail(wrist).cwiseAbs().maxCoeff() < kNowhere;
+    });
+    if (!known) distinct.push_back(end);
+  }
+  return distinct;
+}
 
 }  // namespace
 
@@ -158,8 +175,13 @@ Leg LegBuilder::travel_by_wrist(const ToolWay& way, const JointVector& start) co
         "orientation=\"wrist\" moves the tool on a line, and this target only turns it",
         {"movel(..., orientation=\"least\")", "movej(...)"});
   }
+  const auto is_end = [&](const JointVector& q) {
+    return std::any_of(ends.begin(), ends.end(), [&](const JointVector& end) {
+      return (end - q).cwiseAbs().maxCoeff() <= kSameBranch;
+    });
+  };
   std::optional<MotionError> first;
-  for (const JointVector& end : ends) {
+  for (const JointVector& end : distinct_by_wrist(ends, robot_.joints() - 3)) {
     InsertionOptions how;
     how.position_tolerance = tolerance_.position;
     how.angle_tolerance = tolerance_.angle;
@@ -167,7 +189,8 @@ Leg LegBuilder::travel_by_wrist(const ToolWay& way, const JointVector& start) co
     how.wrist_goal = end;
     try {
       Leg leg = follow(*way.curve, start, how);
-      if (!std::holds_alternative<PositionTarget>(way.goal)) require_arrival(end, leg);
+      const bool anywhere = std::holds_alternative<PositionTarget>(way.goal);
+      if (!anywhere && !is_end(leg.goal)) require_arrival(end, leg);
       return leg;
     } catch (const MotionError& error) {
       if (!first) first = error;

@@ -209,10 +209,53 @@ TEST(WristSingularity, LooksAtABoundedNumberOfPoints) {
                                 from, from.translation() + Eigen::Vector3d(0.017, 0.011, 0.009))};
   EXPECT_LT(points_asked(arm, testing::puma560_limits(), known), kMost);
   EXPECT_LT(points_asked(arm, testing::no_position_limits(6), known), kMost);
+  JointLimits wide = testing::puma560_limits();
+  wide.position_min.setConstant(-20.0);
+  wide.position_max.setConstant(20.0);
   for (unsigned seed = 0; seed < kLines; ++seed) {
     SCOPED_TRACE(seed);
     const RandomLine line = line_from_singular_wrist(arm, seed);
     ASSERT_LT(points_asked(arm, testing::puma560_limits(), line), kMost);
+    ASSERT_LT(points_asked(arm, wide, line), kMost);
+  }
+}
+
+/// A curve that says of itself that it may bend beyond all measure: nothing is ever proven of it.
+class WildCurve final : public TaskCurve {
+ public:
+  explicit WildCurve(const TaskCurve& curve, double third) : curve_(curve), third_(third) {}
+  [[nodiscard]] double length() const override { return curve_.length(); }
+  [[nodiscard]] CurvePoint at(double s) const override { return curve_.at(s); }
+  [[nodiscard]] CurveBounds bounds(double s0, double s1) const override {
+    CurveBounds bounds = curve_.bounds(s0, s1);
+    bounds.p3 += third_;
+    return bounds;
+  }
+
+ private:
+  const TaskCurve& curve_;
+  double third_;
+};
+
+TEST(WristSingularity, RefusesACurveThatTakesEndlessWork) {
+  const ForwardKinematics arm = testing::puma560();
+  const JointVector start = testing::joints_a();
+  const Pose from = arm.pose(start);
+  const LineCurve line =
+      LineCurve::fixed_orientation(from, from.translation() + Eigen::Vector3d(0.0, 0.05, 0.05));
+  const JointLimits limits = testing::no_position_limits(6);
+  const CountedCurve mild(line);
+  ASSERT_FALSE(problem_of(arm, limits, mild, start));
+  for (const double third : {1e15, 1e18}) {
+    SCOPED_TRACE(third);
+    const WildCurve wild(line, third);
+    const CountedCurve counted(wild);
+    const auto problem = problem_of(arm, limits, counted, start);
+    ASSERT_TRUE(problem);
+    EXPECT_EQ(problem->code, ErrorCode::kBadArgument) << problem->message;
+    EXPECT_EQ(problem->ways_out.size(), 2u);
+    EXPECT_LT(counted.points(), 100000);
+    EXPECT_GT(counted.points(), 10 * mild.points());
   }
 }
 
