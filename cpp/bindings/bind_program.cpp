@@ -55,10 +55,14 @@ TargetRow row_of(int step, const Target& target) {
 
 std::vector<TargetRow> targets_of(const MotionProgram& program) {
   std::vector<TargetRow> rows;
+  Pose frame = Pose::Identity();
   for (size_t i = 0; i < program.steps.size(); ++i) {
     const auto step = static_cast<int>(i);
-    const auto& what = program.steps[i].what;
-    if (const auto* ptp = std::get_if<PtpMove>(&what)) {
+    const Step base_step = in_base(program.steps[i], frame);
+    const auto& what = base_step.what;
+    if (const auto* set_frame = std::get_if<SetFrame>(&what)) {
+      frame = set_frame->pose_base_frame;
+    } else if (const auto* ptp = std::get_if<PtpMove>(&what)) {
       rows.push_back(row_of(step, ptp->target));
     } else if (const auto* lin = std::get_if<LinMove>(&what)) {
       rows.push_back(row_of(step, lin->target));
@@ -75,6 +79,20 @@ std::vector<TargetRow> targets_of(const MotionProgram& program) {
     } else if (const auto* timed = std::get_if<TimedMove>(&what)) {
       for (const TimedPoint& point : timed->points) rows.push_back(row_of(step, point.target));
     }
+  }
+  return rows;
+}
+
+using ToolRow = std::pair<int, std::optional<Eigen::Matrix4d>>;
+
+std::vector<ToolRow> tools_of(const MotionProgram& program) {
+  std::vector<ToolRow> rows;
+  for (size_t i = 0; i < program.steps.size(); ++i) {
+    const auto* tool = std::get_if<SetTool>(&program.steps[i].what);
+    if (tool == nullptr) continue;
+    ToolRow row{static_cast<int>(i), std::nullopt};
+    if (tool->pose_flange_tool) row.second = tool->pose_flange_tool->matrix();
+    rows.push_back(row);
   }
   return rows;
 }
@@ -201,6 +219,24 @@ void bind_program(py::module_& m) {
             append(p, SetOutput{index, value}, {}, std::move(file), line);
           },
           py::arg("index"), py::arg("value"), py::arg("file"), py::arg("line"))
+      .def(
+          "add_set_frame",
+          [](MotionProgram& p, const Eigen::Matrix4d& pose, std::string name, std::string file,
+             int line) {
+            append(p, SetFrame{pose_from(pose), std::move(name)}, {}, std::move(file), line);
+          },
+          py::arg("pose"), py::arg("name"), py::arg("file"), py::arg("line"))
+      .def(
+          "add_set_tool",
+          [](MotionProgram& p, const std::optional<Eigen::Matrix4d>& pose, std::string name,
+             std::string file, int line) {
+            std::optional<Pose> tool;
+            if (pose) tool = pose_from(*pose);
+            append(p, SetTool{tool, std::move(name)}, {}, std::move(file), line);
+          },
+          py::arg("pose"), py::arg("name"), py::arg("file"), py::arg("line"))
+      .def("tools", &tools_of,
+           "Step and pose_flange_tool, None for the robot's own, of every change.")
       .def(
           "add_timed",
           [](MotionProgram& p, const std::vector<std::pair<TargetHandle, double>>& points,

@@ -191,6 +191,26 @@ void bind_robot(py::module_& m) {
           },
           py::arg("limits"))
       .def(
+          "with_tool",
+          [](const RobotHandle& r, const Eigen::Matrix4d& pose) {
+            return RobotHandle{r.robot->with_tool(pose_from(pose))};
+          },
+          py::arg("pose"))
+      .def(
+          "with_base",
+          [](const RobotHandle& r, const Eigen::Matrix4d& pose) {
+            return RobotHandle{r.robot->with_base(pose_from(pose))};
+          },
+          py::arg("pose"))
+      .def_property_readonly("base",
+                             [](const RobotHandle& r) {
+                               return Eigen::Matrix4d(r.robot->description().base.matrix());
+                             })
+      .def_property_readonly("tool",
+                             [](const RobotHandle& r) {
+                               return Eigen::Matrix4d(r.robot->description().tool.matrix());
+                             })
+      .def(
           "fk",
           [](const RobotHandle& r, const Vector& q) {
             require_kinematics(*r.robot);
@@ -235,10 +255,13 @@ void bind_robot(py::module_& m) {
   bind_kinematics(m, robot);
   m.def(
       "load_robot",
-      [](const std::string& name_or_path) {
-        return RobotHandle{RobotModel::make(load_description(name_or_path))};
+      [](const std::string& name_or_path, const std::string& tip) {
+        return RobotHandle{RobotModel::make(load_description(name_or_path, tip))};
       },
-      py::arg("name_or_path"), "A built-in robot by name, or a .yaml or .urdf file.");
+      py::arg("name_or_path"), py::arg("tip") = "",
+      "A built-in robot by name, or a .yaml or .urdf file; tip: the link of a URDF that carries "
+      "the "
+      "tool.");
   m.def(
       "joint_robot",
       [](const JointLimits& limits) { return RobotHandle{RobotModel::joint_robot(limits)}; },

@@ -64,6 +64,7 @@ void bind_error(py::module_& m);
 void bind_core(py::module_& m);
 void bind_robot(py::module_& m);
 void bind_kinematics(py::module_& m, py::class_<RobotHandle>& robot);
+void bind_calibration(py::module_& m);
 void bind_path(py::module_& m);
 void bind_program(py::module_& m);
 void bind_planning(py::module_& m);

@@ -8,6 +8,7 @@ PYBIND11_MODULE(_core, m) {
   bind_error(m);
   bind_core(m);
   bind_robot(m);
+  bind_calibration(m);
   bind_path(m);
   bind_program(m);
   bind_planning(m);

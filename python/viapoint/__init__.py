@@ -15,7 +15,7 @@ SI units and radians everywhere; poses are ``pose_base_tool``, (4, 4). Every err
 `MotionError` (see `viapoint.errors`).
 """
 
-from . import errors, profile
+from . import errors, frames, profile
 from ._arm import Arm, connect
 from ._core import (
     Certificate,
@@ -73,6 +73,7 @@ __all__ = [
     "deviation",
     "errors",
     "fit_curve",
+    "frames",
     "insert_knots",
     "joint_deviation",
     "joint_robot",

@@ -179,7 +179,7 @@ class Job:
     @property
     def log(self) -> RunLog:
         """Every cycle so far; complete once the job has ended."""
-        return RunLog.of(self._execution.log(), self.motion.robot, self._period)
+        return RunLog.of(self._execution.log(), self.motion, self._period)
 
     @property
     def report(self) -> RunReport:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -47,6 +48,15 @@ class Motion:
     def robot(self) -> Robot:
         """The arm that moves."""
         return self.program.robot
+
+    @cached_property
+    def tools(self) -> tuple[tuple[int, Robot], ...]:
+        """From which step on the arm moves another tool, and the arm with that tool."""
+        own = self.robot
+        return tuple(
+            (step, own if tool is None else own.with_tool(tool))
+            for step, tool in self.program._core.tools()
+        )
 
     @property
     def duration(self) -> float:
@@ -120,7 +130,7 @@ class Motion:
 
     def _samples(self, columns: dict[str, Vector]) -> Samples:
         # mypy takes a column for a possible robot; the extension gives t, q and derivatives only.
-        return Samples(**columns, robot=self.robot)  # type: ignore[arg-type]
+        return Samples(**columns, robot=self.robot, tools=self.tools)  # type: ignore[arg-type]
 
     def plot(self, path: str | os.PathLike[str], what: str = "joints") -> None:
         """Draw the motion into a picture file (.png, .svg or .pdf).

@@ -232,9 +232,10 @@ def _target_points(motion: Motion) -> Vector:
     """Tool positions of the program's start and targets, (k, 3) [m]."""
     robot = motion.robot
     points = [robot.fk(motion.program.start)[:3, 3]]
-    for _, kind, value in motion.program._core.targets():
+    for step, kind, value in motion.program._core.targets():
         if kind == "joints":
-            points.append(robot.fk(value.reshape(-1))[:3, 3])
+            arms = [robot, *(arm for first, arm in motion.tools if first < step)]
+            points.append(arms[-1].fk(value.reshape(-1))[:3, 3])
         else:
             points.append(value[:3, 3] if kind == "pose" else value.reshape(-1))
     return np.array(points)

@@ -16,6 +16,7 @@ from ._robot import Robot, load_robot
 from ._source import caller
 from ._zone import ZoneLike
 from .errors import BadArgumentError, BadProgramError, MotionError
+from .frames import Frame, Tool, frame_of, tool_of
 
 OUTPUTS = 64
 
@@ -43,6 +44,10 @@ class Program(CurveSteps):
         For people and for the names of files.
     position_tolerance, angle_tolerance : float
         Lines and curves stay proven within this [m], [rad].
+    frame : Frame or array_like, (4, 4), optional
+        As the first `set_frame` would have it.
+    tool : Tool or array_like, (4, 4), optional
+        As the first `set_tool` would have it.
 
     Raises
     ------
@@ -62,6 +67,8 @@ class Program(CurveSteps):
         name: str = "program",
         position_tolerance: float = _core.POSITION_TOLERANCE,
         angle_tolerance: float = _core.ANGLE_TOLERANCE,
+        frame: Frame | ArrayLike | None = None,
+        tool: Tool | ArrayLike | None = None,
     ) -> None:
         super().__init__(
             robot, start=start, speed=speed, acceleration=acceleration, scale=scale, zone=zone
@@ -71,6 +78,10 @@ class Program(CurveSteps):
             number(position_tolerance, "position_tolerance", "m", above=0.0),
             number(angle_tolerance, "angle_tolerance", "rad", above=0.0),
         )
+        if frame is not None:
+            self.set_frame(frame)
+        if tool is not None:
+            self.set_tool(tool)
 
     def __repr__(self) -> str:
         """Name, robot and number of steps."""
@@ -146,6 +157,47 @@ class Program(CurveSteps):
         way = choice(orientation, "orientation", ("least", "wrist", "fixed"))
         file, line = caller()
         self._core.add_movel(self._target(target, position), way, options, file, line)
+        return self
+
+    def set_frame(self, frame: Frame | ArrayLike | None = None) -> Program:
+        """Tell every later pose, position, center and axis in this frame.
+
+        Joints are what they are. A frame only says where targets are: corners are rounded as if
+        the same targets were told in the base frame.
+
+        Parameters
+        ----------
+        frame : Frame or array_like, (4, 4), optional
+            pose_base_frame [m]. Default: the base frame again.
+
+        Raises
+        ------
+        BadArgumentError, NotARotationError
+            No pose.
+        """
+        chosen = frame_of(frame)
+        self._core.add_set_frame(chosen.pose, chosen.name, *caller())
+        return self
+
+    def set_tool(self, tool: Tool | ArrayLike | None = None) -> Program:
+        """Move this tool in every later move.
+
+        A zone is a promise about one tool's point, so the arm stops at the point where the tool
+        changes; a zone given for the move before is reported as a stop.
+
+        Parameters
+        ----------
+        tool : Tool or array_like, (4, 4), optional
+            pose_flange_tool [m]. Default: the robot's own again.
+
+        Raises
+        ------
+        BadArgumentError, NotARotationError
+            No pose.
+        """
+        chosen = None if tool is None else tool_of(tool)
+        pose, name = (None, "") if chosen is None else (chosen.pose, chosen.name)
+        self._core.add_set_tool(pose, name, *caller())
         return self
 
     def wait(self, seconds: float) -> Program:

@@ -8,13 +8,14 @@ from typing import cast
 import numpy as np
 
 from . import _core
-from ._arguments import ArrayLike, Vector, numbers_of, vector
+from ._arguments import ArrayLike, Vector, numbers_of, pose, vector
 from ._kinematics import Kinematics
 from .errors import (
     BadArgumentError,
     CouplingLimitError,
     JointLimitError,
 )
+from .frames import Tool, tool_of
 
 _SLACK = 1e-9
 """Joints this far outside a limit [rad or m] are at it, but for rounding."""
@@ -81,6 +82,16 @@ class Robot(Kinematics):
         """Hash of chain, limits and tool: two robots with the same one move alike."""
         return self._core.fingerprint
 
+    @property
+    def base(self) -> Vector:
+        """Where the arm stands, (4, 4) [m]: its base in the frame that all poses are told in."""
+        return self._core.base
+
+    @property
+    def tool(self) -> Vector:
+        """pose_flange_tool, (4, 4) [m]."""
+        return self._core.tool
+
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the robot as a .yaml file that `load_robot` reads back: the same fingerprint.
 
@@ -137,8 +148,42 @@ class Robot(Kinematics):
             )
         )
 
+    def with_tool(self, tool: ArrayLike | Tool) -> Robot:
+        """Return the same arm with another tool in the place of its own.
 
-def load_robot(name_or_path: str | os.PathLike[str]) -> Robot:
+        Parameters
+        ----------
+        tool : array_like, (4, 4), or Tool
+            pose_flange_tool [m]; `viapoint.frames` finds it by touching a point.
+
+        Raises
+        ------
+        BadArgumentError, NotARotationError
+            No pose.
+        UncontrolledError
+            The robot has no kinematics.
+        """
+        return Robot(self._core.with_tool(tool_of(tool).pose))
+
+    def with_base(self, base: ArrayLike) -> Robot:
+        """Return the same arm standing elsewhere: every pose is then told in the world frame.
+
+        Parameters
+        ----------
+        base : array_like, (4, 4)
+            pose_world_base [m]; it takes the place of any earlier one.
+
+        Raises
+        ------
+        BadArgumentError, NotARotationError
+            No pose.
+        UncontrolledError
+            The robot has no kinematics.
+        """
+        return Robot(self._core.with_base(pose(base, "base")[0]))
+
+
+def load_robot(name_or_path: str | os.PathLike[str], *, tip: str | None = None) -> Robot:
     """Load a robot.
 
     Parameters
@@ -146,6 +191,8 @@ def load_robot(name_or_path: str | os.PathLike[str]) -> Robot:
     name_or_path : str or path
         A built-in name (``"puma560"``; the command ``viapoint robots`` lists them), or a file that
         ends in ``.yaml`` or ``.urdf``.
+    tip : str, optional
+        The link of a URDF that carries the tool. Default: its only leaf.
 
     Raises
     ------
@@ -158,7 +205,7 @@ def load_robot(name_or_path: str | os.PathLike[str]) -> Robot:
         raise BadArgumentError(
             f'name_or_path is {name_or_path!r}; it must be a name such as "puma560", or a file.'
         )
-    return Robot(_core.load_robot(os.fspath(name_or_path)))
+    return Robot(_core.load_robot(os.fspath(name_or_path), tip or ""))
 
 
 def require_robot(robot: object) -> Robot:

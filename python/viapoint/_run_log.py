@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._arguments import Vector, writing
+from ._motion import Motion
 from ._robot import Robot
 from ._samples import Samples
 
@@ -45,6 +46,8 @@ class RunLog:
         The arm that moved.
     core : Log
         The same records in C++.
+    tools : tuple of (int, Robot)
+        As `Samples.tools`.
     """
 
     cycle: npt.NDArray[np.uint64]
@@ -64,6 +67,7 @@ class RunLog:
     period: float
     robot: Robot = field(repr=False)
     core: _core.Log = field(repr=False)
+    tools: tuple[tuple[int, Robot], ...] = field(default=(), repr=False)
 
     STATES: ClassVar[list[str]] = _core.run_states()
 
@@ -87,12 +91,15 @@ class RunLog:
             qddd=self.qddd,
             move=self.move,
             robot=self.robot,
+            tools=self.tools,
         )
 
     @classmethod
-    def of(cls, core: _core.Log, robot: Robot, period: float) -> RunLog:
-        """Take over what the controller kept."""
-        return cls(**core.columns(), robot=robot, period=period, core=core)
+    def of(cls, core: _core.Log, motion: Motion, period: float) -> RunLog:
+        """Take over what the controller kept of a run of `motion`."""
+        return cls(
+            **core.columns(), robot=motion.robot, period=period, core=core, tools=motion.tools
+        )
 
     def save_npz(self, path: str | os.PathLike[str]) -> None:
         """Write the arrays by their names into a numpy file.

@@ -26,6 +26,8 @@ class Samples:
         Index of the program's step under way.
     robot : Robot
         The arm that moves.
+    tools : tuple of (int, Robot)
+        From which step on the arm moves another tool, and the arm with that tool.
     """
 
     t: Vector
@@ -35,6 +37,7 @@ class Samples:
     qddd: Vector
     move: npt.NDArray[np.int32]
     robot: Robot
+    tools: tuple[tuple[int, Robot], ...] = ()
 
     def __len__(self) -> int:
         """Count the samples."""
@@ -53,11 +56,21 @@ class Samples:
         UncontrolledError
             The robot has no kinematics.
         """
-        return self.robot.fk(self.q)
+        poses = self.robot.fk(self.q)
+        for first, robot in self.tools:
+            now = self.move >= first
+            poses[now] = robot.fk(self.q[now])
+        return poses
 
     @cached_property
     def _rates(self) -> tuple[Vector, Vector]:
-        return self.robot._core.tool_rates(self.q, self.qd, self.qdd)
+        rates = self.robot._core.tool_rates(self.q, self.qd, self.qdd)
+        for first, robot in self.tools:
+            now = self.move >= first
+            of_tool = robot._core.tool_rates(self.q[now], self.qd[now], self.qdd[now])
+            for all_rates, new in zip(rates, of_tool, strict=True):
+                all_rates[now] = new
+        return rates
 
     @property
     def twist(self) -> Vector:

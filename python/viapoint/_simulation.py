@@ -48,7 +48,7 @@ def simulate(
     motion = motion_of(program)
     period = number(cycle, "cycle", "s", least=1e-4, most=1.0)
     timed = [_command(command, f"commands[{i}]") for i, command in enumerate(commands)]
-    return RunLog.of(_core.simulate(motion._core, timed, period), motion.robot, period).samples
+    return RunLog.of(_core.simulate(motion._core, timed, period), motion, period).samples
 
 
 def _command(command: Command, name: str) -> tuple[float, str, float]:

@@ -30,6 +30,7 @@ __all__ = [
     "BusyError",
     "CouplingLimitError",
     "DegenerateCurveError",
+    "DegeneratePointsError",
     "DiscontinuousError",
     "DriveFaultError",
     "EmptyProgramError",
@@ -271,6 +272,12 @@ class DegenerateCurveError(PoseError):
     """Points that define no curve (those of an arc on one line), or a curve with a cusp."""
 
     code = "degenerate_curve"
+
+
+class DegeneratePointsError(PoseError):
+    """Touched points too alike to tell the tool or frame that is asked for."""
+
+    code = "degenerate_points"
 
 
 class PoseCorrectedError(PoseError):

@@ -31,6 +31,7 @@ constexpr std::array kNames{
     Name{ErrorCode::kUncontrolled, "uncontrolled"},
     Name{ErrorCode::kHalfTurn, "half_turn"},
     Name{ErrorCode::kDegenerateCurve, "degenerate_curve"},
+    Name{ErrorCode::kDegeneratePoints, "degenerate_points"},
     Name{ErrorCode::kZeroLength, "zero_length"},
     Name{ErrorCode::kZoneShrunk, "zone_shrunk"},
     Name{ErrorCode::kZoneIsStop, "zone_is_stop"},

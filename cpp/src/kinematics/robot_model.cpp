@@ -30,6 +30,16 @@ KDL::JntArray to_kdl(const JointVector& q) {
   return out;
 }
 
+/// The chain from the frame that poses are told in: the arm's placement is part of it.
+std::vector<ChainJoint> placed_chain(const RobotDescription& description) {
+  std::vector<ChainJoint> chain = description.chain;
+  // Left to the last bit as it is where the arm stands at the origin.
+  if (!chain.empty() && description.base.matrix() != Eigen::Matrix4d::Identity()) {
+    chain.front().before = description.base * chain.front().before;
+  }
+  return chain;
+}
+
 /// FNV-1a, 64 bit (Fowler, Noll, Vo 1991).
 class Fingerprint {
  public:
@@ -58,7 +68,7 @@ class Fingerprint {
 
 std::string fingerprint_of(const RobotDescription& description) {
   Fingerprint hash;
-  for (const ChainJoint& joint : description.chain) {
+  for (const ChainJoint& joint : placed_chain(description)) {
     hash.add(joint.type == JointType::kRevolute ? 0.0 : 1.0);
     hash.add(joint.before.matrix());
     hash.add(joint.axis);
@@ -91,6 +101,9 @@ void require_sound(const RobotDescription& description) {
     refuse(description, "a chain of " + std::to_string(description.chain.size()) +
                             " joints with limits for " + std::to_string(joints));
   }
+  for (const Pose* pose : {&description.base, &description.flange, &description.tool}) {
+    if (!pose->matrix().allFinite()) refuse(description, "base, flange and tool must be finite");
+  }
   for (size_t i = 0; i < joints; ++i) {
     const ChainJoint& joint = description.chain[i];
     if (std::abs(joint.axis.norm() - 1.0) > 1e-9 || !joint.before.matrix().allFinite()) {
@@ -112,9 +125,10 @@ RobotModel::RobotModel(RobotDescription description, bool has_kinematics)
       fingerprint_(fingerprint_of(description_)) {
   if (!has_kinematics_) return;
   const Pose tool = description_.flange * description_.tool;
-  forward_ = ForwardKinematics(description_.chain, tool);
+  const std::vector<ChainJoint> chain = placed_chain(description_);
+  forward_ = ForwardKinematics(chain, tool);
   auto kdl = std::make_unique<Kdl>();
-  for (const ChainJoint& joint : description_.chain) {
+  for (const ChainJoint& joint : chain) {
     const KDL::Vector axis(joint.axis.x(), joint.axis.y(), joint.axis.z());
     const auto type =
         joint.type == JointType::kRevolute ? KDL::Joint::RotAxis : KDL::Joint::TransAxis;
@@ -157,12 +171,29 @@ std::shared_ptr<const RobotModel> RobotModel::with_limits(const JointLimits& lim
   return make(std::move(description));
 }
 
+std::shared_ptr<const RobotModel> RobotModel::with_tool(const Pose& pose_flange_tool) const {
+  require_kinematics();
+  RobotDescription description = description_;
+  description.tool = pose_flange_tool;
+  return make(std::move(description));
+}
+
+std::shared_ptr<const RobotModel> RobotModel::with_base(const Pose& pose_world_base) const {
+  require_kinematics();
+  RobotDescription description = description_;
+  description.base = pose_world_base;
+  return make(std::move(description));
+}
+
+void RobotModel::require_kinematics() const {
+  if (has_kinematics_) return;
+  throw MotionError(ErrorCode::kUncontrolled,
+                    "robot \"" + name() + "\" has joints and limits but no kinematics",
+                    {"move it in joint space", "load a robot with a D-H table or a URDF"});
+}
+
 void RobotModel::require_kinematics(const JointVector& q) const {
-  if (!has_kinematics_) {
-    throw MotionError(ErrorCode::kUncontrolled,
-                      "robot \"" + name() + "\" has joints and limits but no kinematics",
-                      {"move it in joint space", "load a robot with a D-H table or a URDF"});
-  }
+  require_kinematics();
   require_joints(q, joints(), "q");
 }
 

@@ -13,9 +13,9 @@ namespace {
 
 enum class Form { kStandard, kModified, kAxes, kNone };
 
-const std::vector<std::string> kTopKeys{"name",     "title",      "units",  "axes",
-                                        "dh",       "kinematics", "flange", "tool",
-                                        "coupling", "sources",    "chosen", "joints"};
+const std::vector<std::string> kTopKeys{"name",       "title",  "units",  "axes", "dh",
+                                        "kinematics", "base",   "flange", "tool", "coupling",
+                                        "sources",    "chosen", "joints"};
 const std::vector<std::string> kLimitKeys{"name",     "type",         "position",
                                           "velocity", "acceleration", "jerk"};
 
@@ -96,10 +96,11 @@ class Reader {
     if (top_.has("sources")) out_.sources = top_.at("sources").texts();
     if (top_.has("chosen")) out_.chosen = top_.at("chosen").texts();
     read_joints();
+    if (top_.has("base")) out_.base = read_pose(top_.at("base"), angle_);
     if (top_.has("flange")) out_.flange = out_.flange * read_pose(top_.at("flange"), angle_);
     if (top_.has("tool")) out_.tool = read_pose(top_.at("tool"), angle_);
-    if (form_ == Form::kNone && (top_.has("flange") || top_.has("tool"))) {
-      top_.value().refuse("a robot without kinematics has no flange and no tool");
+    if (form_ == Form::kNone && (top_.has("base") || top_.has("flange") || top_.has("tool"))) {
+      top_.value().refuse("a robot without kinematics has no base, no flange and no tool");
     }
     if (top_.has("coupling")) read_coupling();
     return std::move(out_);

@@ -76,6 +76,9 @@ std::string to_yaml(const RobotDescription& description) {
   if (!kinematics) {
     out << "kinematics: none\n";
   } else {
+    if (description.base.matrix() != Eigen::Matrix4d::Identity()) {
+      out << "base: " << pose(description.base) << "\n";
+    }
     out << "flange: " << pose(description.flange) << "\n";
     out << "tool: " << pose(description.tool) << "\n";
   }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "planning/leg_builder.hpp"
+#include "planning/tool_changes.hpp"
 #include "planning/ways_out.hpp"
 
 namespace viapoint::planning {
@@ -23,13 +24,16 @@ constexpr double kMostWish = 1e9;
 
 class Walk {
  public:
-  Walk(const RobotModel& robot, const MotionProgram& program)
-      : robot_(robot), builder_(robot, program.tolerance), program_(program) {}
+  Walk(RobotPtr robot, const MotionProgram& program)
+      : tools_(robot), robot_(std::move(robot)), program_(program) {
+    builder_.emplace(*robot_, program_.tolerance);
+  }
 
   Itinerary run() {
     if (!begin()) return std::move(itinerary_);
     for (step_ = 0; step_ < static_cast<int>(program_.steps.size()); ++step_) {
-      std::visit(*this, program_.steps[static_cast<size_t>(step_)].what);
+      const Step step = in_base(program_.steps[static_cast<size_t>(step_)], frame_);
+      std::visit(*this, step.what);
     }
     if (itinerary_.items.empty() && itinerary_.report.ok()) {
       Problem problem;
@@ -46,29 +50,29 @@ class Walk {
 
   void operator()(const PtpMove& move) {
     warn_of_correction(move.target);
-    build(move.target, [&] { return builder_.ptp(move, at_); }, nullptr);
+    build(move.target, [&] { return builder_->ptp(move, at_); }, nullptr);
   }
 
   void operator()(const LinMove& move) {
     warn_of_correction(move.target);
-    build_curve(move, move.target, [this](const LinMove& m) { return builder_.lin(m, at_); });
+    build_curve(move, move.target, [this](const LinMove& m) { return builder_->lin(m, at_); });
   }
 
   void operator()(const CircMove& move) {
     warn_of_correction(move.via);
     warn_of_correction(move.target);
-    build_curve(move, move.target, [this](const CircMove& m) { return builder_.circ(m, at_); });
+    build_curve(move, move.target, [this](const CircMove& m) { return builder_->circ(m, at_); });
   }
 
   void operator()(const TurnMove& move) {
-    build_curve(move, goal_of(move), [this](const TurnMove& m) { return builder_.turn(m, at_); });
+    build_curve(move, goal_of(move), [this](const TurnMove& m) { return builder_->turn(m, at_); });
   }
 
   void operator()(const SplineMove& move) {
     for (const Target& point : move.points) warn_of_correction(point);
     std::optional<Target> goal;
     if (!move.points.empty()) goal = move.points.back();
-    const auto leg = [this](const SplineMove& m) { return builder_.spline(m, at_); };
+    const auto leg = [this](const SplineMove& m) { return builder_->spline(m, at_); };
     if (move.space == SplineSpace::kJoint) {
       build(goal, [&] { return leg(move); }, nullptr);
     } else {
@@ -102,18 +106,32 @@ class Walk {
         Output{step_, {static_cast<std::int16_t>(output.index), output.value}});
   }
 
+  void operator()(const SetFrame& step) { frame_ = step.pose_base_frame; }
+
+  void operator()(const SetTool& step) {
+    try {
+      robot_ = tools_.with(step);
+    } catch (const MotionError& error) {
+      add(error.problem());
+      return;
+    }
+    builder_.emplace(*robot_, program_.tolerance);
+  }
+
   void operator()(const TimedMove&) {
-    add(ErrorCode::kBadProgram, "a timed motion must be the only step of its program",
+    add(ErrorCode::kBadProgram,
+        "a timed motion must be the only step of its program, but for its frame and tool",
         {"make a program of its own for it"});
   }
 
  private:
   bool begin() {
-    if (!program_.robot_fingerprint.empty() && program_.robot_fingerprint != robot_.fingerprint()) {
+    if (!program_.robot_fingerprint.empty() &&
+        program_.robot_fingerprint != robot_->fingerprint()) {
       add(ErrorCode::kBadProgram,
           "the program was written for robot \"" + program_.robot + "\" (fingerprint " +
-              program_.robot_fingerprint + "), this is \"" + robot_.name() + "\" (" +
-              robot_.fingerprint() + "): chain, tool or limits differ",
+              program_.robot_fingerprint + "), this is \"" + robot_->name() + "\" (" +
+              robot_->fingerprint() + "): chain, tool or limits differ",
           {"load the robot that the program was written for",
            "write the program anew for this robot"});
       return false;
@@ -130,7 +148,7 @@ class Walk {
       return false;
     }
     try {
-      require_within_limits(robot_, program_.start, "the start");
+      require_within_limits(*robot_, program_.start, "the start");
     } catch (const MotionError& error) {
       itinerary_.report.problems.push_back(error.problem());
       return false;
@@ -143,7 +161,7 @@ class Walk {
   std::optional<Target> goal_of(const TurnMove& move) const {
     if (lost_) return std::nullopt;
     try {
-      return builder_.goal_of(move, at_);
+      return builder_->goal_of(move, at_);
     } catch (const MotionError&) {
       return std::nullopt;  // building the leg says why
     }
@@ -157,7 +175,7 @@ class Walk {
     if (move.orientation != Orientation::kWrist) another = [&] { return leg_of(by_wrist); };
     const std::function<std::vector<std::string>()> ways = [&]() -> std::vector<std::string> {
       if (!goal) return {};
-      return ways_out_of(*goal, at_, builder_, another);
+      return ways_out_of(*goal, at_, *builder_, another);
     };
     build(goal, [&] { return leg_of(move); }, ways);
   }
@@ -172,12 +190,13 @@ class Walk {
     try {
       if (lost_) {  // where this leg begins is not known: only its end can be looked at
         if (!goal) return;
-        at_ = builder_.resolve(*goal, at_);
+        at_ = builder_->resolve(*goal, at_);
         lost_ = false;
         return;
       }
       Leg leg = build_leg();
-      builder_.apply(leg, options, step_);
+      builder_->apply(leg, options, step_);
+      leg.robot = robot_;
       at_ = leg.goal;
       outputs_here_ = 0;
       itinerary_.items.emplace_back(std::move(leg));
@@ -207,7 +226,7 @@ class Walk {
     lost_ = !goal;
     if (lost_) return;
     try {
-      at_ = builder_.resolve(*goal, at_);
+      at_ = builder_->resolve(*goal, at_);
     } catch (const MotionError&) {
       lost_ = true;  // the target's own problem is in the report already
     }
@@ -231,9 +250,9 @@ class Walk {
     }
     const bool at_tool =
         options.zone.kind == ZoneKind::kRadius || options.zone.kind == ZoneKind::kDeviation;
-    if (at_tool && !robot_.has_kinematics()) {
+    if (at_tool && !robot_->has_kinematics()) {
       add(ErrorCode::kBadArgument,
-          robot_.name() + " has no kinematics, so a zone at the tool means nothing to it",
+          robot_->name() + " has no kinematics, so a zone at the tool means nothing to it",
           {"zone=joint_deviation(rad)"});
     }
     return itinerary_.report.problems.size() == before;
@@ -269,8 +288,10 @@ class Walk {
     add(std::move(problem));
   }
 
-  const RobotModel& robot_;
-  LegBuilder builder_;
+  ToolChanges tools_;
+  RobotPtr robot_;  ///< with the tool of the present step
+  std::optional<LegBuilder> builder_;
+  Pose frame_ = Pose::Identity();  ///< of the present step
   const MotionProgram& program_;
   Itinerary itinerary_;
   JointVector at_;     ///< where the arm is, or was to be
@@ -281,8 +302,8 @@ class Walk {
 
 }  // namespace
 
-Itinerary make_itinerary(const RobotModel& robot, const MotionProgram& program) {
-  return Walk(robot, program).run();
+Itinerary make_itinerary(RobotPtr robot, const MotionProgram& program) {
+  return Walk(std::move(robot), program).run();
 }
 
 void locate(Problem& problem, const MotionProgram& program, int step) {

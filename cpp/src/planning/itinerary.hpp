@@ -32,7 +32,7 @@ struct Itinerary {
 
 /// Walks the program from its start. After a step that fails it goes on from where that step was
 /// to end, so that one run finds every problem.
-[[nodiscard]] Itinerary make_itinerary(const RobotModel& robot, const MotionProgram& program);
+[[nodiscard]] Itinerary make_itinerary(RobotPtr robot, const MotionProgram& program);
 
 /// Adds move and source line to a problem that lacks them.
 void locate(Problem& problem, const MotionProgram& program, int step);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "planning/tool_limits.hpp"
+#include "viapoint/kinematics/robot_model.hpp"
 #include "viapoint/path/joint_path.hpp"
 #include "viapoint/program/motion_program.hpp"
 
@@ -10,6 +11,7 @@ namespace viapoint::planning {
 
 /// The whole way of one move, from point to point.
 struct Leg {
+  RobotPtr robot;     ///< the arm with the tool that moves here
   int step = 0;       ///< in the program
   JointVector start;  ///< (n,)
   JointVector goal;   ///< (n,)

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <limits>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "planning/itinerary.hpp"
 #include "planning/section.hpp"
+#include "planning/tool_changes.hpp"
 #include "viapoint/planning/timed_plan.hpp"
 
 namespace viapoint {
@@ -63,7 +65,7 @@ Problem warning_of(const CornerOutcome& corner) {
 }
 
 /// Smallest manipulability at the pieces' ends and middles.
-double least_manipulability(const RobotModel& robot, const std::vector<TrajectoryPiece>& pieces) {
+double least_manipulability(const RobotModel& robot, std::span<const TrajectoryPiece> pieces) {
   if (!robot.has_kinematics()) return 0.0;
   double least = std::numeric_limits<double>::infinity();
   for (const TrajectoryPiece& piece : pieces) {
@@ -76,13 +78,14 @@ double least_manipulability(const RobotModel& robot, const std::vector<Trajector
 
 class Composer {
  public:
-  Composer(const RobotModel& robot, const MotionProgram& program, const Itinerary& itinerary)
-      : robot_(robot), program_(program), itinerary_(itinerary) {}
+  Composer(RobotPtr robot, const MotionProgram& program, const Itinerary& itinerary)
+      : arm_(std::move(robot)), program_(program), itinerary_(itinerary) {}
 
   PlannedMotion compose() {
     JointVector at = program_.start;
     for (const Item& item : itinerary_.items) {
       if (const auto* leg = std::get_if<Leg>(&item)) {
+        if (leg->robot != arm_) change_tool(leg->robot);
         legs_.push_back(*leg);
         at = leg->goal;
       } else if (const auto* dwell = std::get_if<Dwell>(&item)) {
@@ -102,12 +105,37 @@ class Composer {
   /// A fault of the timing says at least where its stretch of motion begins.
   std::vector<Section> sections() const {
     try {
-      return planning::build_sections(robot_, legs_);
+      return planning::build_sections(*arm_, legs_);
     } catch (const MotionError& error) {
       Problem problem = error.problem();
       planning::locate(problem, program_, legs_.front().step);
       throw MotionError(std::move(problem));
     }
+  }
+
+  /// A zone is a promise about one tool point, so the arm rests where the tool changes.
+  void change_tool(const RobotPtr& arm) {
+    const bool blended = !legs_.empty() && legs_.back().options.zone.kind != ZoneKind::kFine;
+    CornerOutcome stop;
+    if (blended) {
+      stop.move = legs_.back().step;
+      stop.asked = legs_.back().options.zone;
+      stop.stopped = true;
+      stop.reason = "the tool changes at this point";
+    }
+    flush_legs();
+    if (blended) motion_.corners.push_back(std::move(stop));
+    look_at_manipulability();
+    arm_ = arm;
+  }
+
+  /// Of the pieces since the tool changed last.
+  void look_at_manipulability() {
+    const auto fresh = std::span(pieces_).subspan(looked_at_);
+    if (!fresh.empty()) {
+      manipulability_ = std::min(manipulability_, least_manipulability(*arm_, fresh));
+    }
+    looked_at_ = pieces_.size();
   }
 
   void flush_legs() {
@@ -138,12 +166,12 @@ class Composer {
       motion_.report.problems.push_back(std::move(problem));
       return std::move(motion_);
     }
-    const double manipulability = least_manipulability(robot_, pieces_);
-    motion_.trajectory = Trajectory(std::move(pieces_), robot_.limits());
+    look_at_manipulability();
+    motion_.trajectory = Trajectory(std::move(pieces_), arm_->limits());
     Certificate& certificate = motion_.trajectory.certificate();
     certificate.path_deviation = position_deviation_;
     certificate.angle_deviation = angle_deviation_;
-    certificate.manipulability = manipulability;
+    certificate.manipulability = manipulability_;
     for (const CornerOutcome& corner : motion_.corners) {
       certificate.zone_deviation = std::max(certificate.zone_deviation, corner.cut);
     }
@@ -154,7 +182,7 @@ class Composer {
     return std::move(motion_);
   }
 
-  const RobotModel& robot_;
+  RobotPtr arm_;  ///< with the tool of legs_
   const MotionProgram& program_;
   const Itinerary& itinerary_;
   PlannedMotion motion_;
@@ -163,14 +191,12 @@ class Composer {
   std::vector<Output> outputs_;
   double position_deviation_ = 0.0;
   double angle_deviation_ = 0.0;
+  double manipulability_ = std::numeric_limits<double>::infinity();
+  size_t looked_at_ = 0;  ///< pieces that manipulability_ counts
 };
 
-const TimedMove* timed_alone(const MotionProgram& program) {
-  return program.steps.size() == 1 ? std::get_if<TimedMove>(&program.steps.front().what) : nullptr;
-}
-
 /// Everything but raising: the motion is empty where the report has errors.
-PlannedMotion draft(const RobotModel& robot, const MotionProgram& program) {
+PlannedMotion draft(const RobotPtr& robot, const MotionProgram& program) {
   const Itinerary itinerary = planning::make_itinerary(robot, program);
   if (!itinerary.report.ok()) {
     PlannedMotion motion;
@@ -202,10 +228,10 @@ MotionPlanner::MotionPlanner(RobotPtr robot) : robot_(std::move(robot)) {}
 
 Report MotionPlanner::check(const MotionProgram& program) const {
   try {
-    if (const TimedMove* timed = timed_alone(program)) {
-      return plan_timed(*robot_, program, *timed, 0).report;
+    if (const auto timed = planning::timed_alone(robot_, program)) {
+      return plan_timed(*timed->robot, program, timed->move, timed->step).report;
     }
-    return draft(*robot_, program).report;
+    return draft(robot_, program).report;
   } catch (const MotionError& error) {
     Report report;
     report.problems.push_back(error.problem());
@@ -214,11 +240,11 @@ Report MotionPlanner::check(const MotionProgram& program) const {
 }
 
 PlannedMotion MotionPlanner::plan(const MotionProgram& program) const {
-  const TimedMove* timed = timed_alone(program);
+  const auto timed = planning::timed_alone(robot_, program);
   PlannedMotion motion =
-      timed != nullptr ? plan_timed(*robot_, program, *timed, 0) : draft(*robot_, program);
+      timed ? plan_timed(*timed->robot, program, timed->move, timed->step) : draft(robot_, program);
   // A timed motion is for study: broken limits stay in its report, and only a drive refuses them.
-  if (timed != nullptr && !motion.trajectory.pieces().empty()) return motion;
+  if (timed && !motion.trajectory.pieces().empty()) return motion;
   for (const Problem& problem : motion.report.problems) {
     if (problem.severity == Severity::kError) throw MotionError(problem);
   }

@@ -16,6 +16,7 @@ using program_json::Json;
 using program_json::json_of;
 using program_json::Node;
 using program_json::orientation_of;
+using program_json::pose_of;
 using program_json::spline_of;
 using program_json::target_of;
 using program_json::turn_of;
@@ -47,6 +48,12 @@ struct StepWriter {
   void operator()(const SetOutput& output) const {
     json["set_do"] = {{"index", output.index}, {"value", output.value}};
   }
+  void operator()(const SetFrame& step) const {
+    json["set_frame"] = named(&step.pose_base_frame, step.name);
+  }
+  void operator()(const SetTool& step) const {
+    json["set_tool"] = named(step.pose_flange_tool ? &*step.pose_flange_tool : nullptr, step.name);
+  }
   void operator()(const TimedMove& move) const {
     Json points = Json::array();
     for (const TimedPoint& point : move.points) {
@@ -56,6 +63,13 @@ struct StepWriter {
     }
     json["timed"] = {
         {"space", word_of(move.space, kSpaces)}, {"t_acc", move.t_acc}, {"points", points}};
+  }
+
+  static Json named(const Pose* pose, const std::string& name) {
+    Json json = Json::object();
+    if (!name.empty()) json["name"] = name;
+    if (pose != nullptr) json["pose"] = json_of(*pose);
+    return json;
   }
 };
 
@@ -108,13 +122,24 @@ std::optional<double> wish(const Node& node, const char* key) {
   return value;
 }
 
+std::optional<Pose> pose_in(const Node& node) {
+  node.only({"name", "pose"});
+  if (!node.has("pose")) return std::nullopt;
+  return pose_of(node.at("pose"));
+}
+
+std::string name_in(const Node& node) { return node.has("name") ? node.at("name").text() : ""; }
+
 /// A step is one thing: what says two would have one of them ignored.
 void require_one_kind(const Node& node) {
   int kinds = 0;
-  for (const char* kind : {"ptp", "lin", "circ", "turn", "spline", "wait", "set_do", "timed"})
+  for (const char* kind : {"ptp", "lin", "circ", "turn", "spline", "wait", "set_do", "timed",
+                           "set_frame", "set_tool"}) {
     kinds += node.has(kind) ? 1 : 0;
+  }
   if (kinds != 1) {
-    node.refuse("exactly one of ptp, lin, circ, turn, spline, wait, set_do, timed");
+    node.refuse(
+        "exactly one of ptp, lin, circ, turn, spline, wait, set_do, timed, set_frame, set_tool");
   }
   const bool cartesian =
       node.has("lin") || node.has("circ") || node.has("turn") || node.has("spline");
@@ -131,7 +156,7 @@ void require_one_kind(const Node& node) {
 
 Step step_of(const Node& node) {
   node.only({"ptp", "lin", "circ", "via", "turn", "spline", "orientation", "wait", "set_do",
-             "timed", "zone", "speed", "acceleration", "scale", "source"});
+             "timed", "set_frame", "set_tool", "zone", "speed", "acceleration", "scale", "source"});
   require_one_kind(node);
   Step step;
   if (node.has("ptp")) {
@@ -150,6 +175,12 @@ Step step_of(const Node& node) {
     const Node output = node.at("set_do");
     output.only({"index", "value"});
     step.what = SetOutput{output.at("index").integer(), output.at("value").boolean()};
+  } else if (node.has("set_frame")) {
+    const Node frame = node.at("set_frame");
+    step.what = SetFrame{pose_in(frame).value_or(Pose::Identity()), name_in(frame)};
+  } else if (node.has("set_tool")) {
+    const Node tool = node.at("set_tool");
+    step.what = SetTool{pose_in(tool), name_in(tool)};
   } else {
     step.what = timed_of(node.at("timed"));
   }

@@ -8,6 +8,8 @@ constexpr Word<Orientation> kOrientations[] = {
     {Orientation::kFixed, "fixed"},     {Orientation::kTangent, "tangent"},
     {Orientation::kThrough, "through"}, {Orientation::kFree, "free"}};
 
+}  // namespace
+
 Pose pose_of(const Node& node) {
   if (node.array_size() != 4) node.refuse("four rows of four numbers");
   Eigen::Matrix4d matrix;
@@ -25,25 +27,27 @@ Pose pose_of(const Node& node) {
   }
 }
 
-}  // namespace
-
 Json json_of(const Eigen::Vector3d& vector) {
   return std::vector<double>(vector.begin(), vector.end());
 }
 
 Json json_of(const JointVector& q) { return std::vector<double>(q.begin(), q.end()); }
 
+Json json_of(const Pose& pose) {
+  Json rows = Json::array();
+  for (int row = 0; row < 4; ++row) {
+    const Eigen::RowVector4d values = pose.matrix().row(row);
+    rows.push_back(std::vector<double>(values.begin(), values.end()));
+  }
+  return rows;
+}
+
 Json json_of(const Target& target) {
   Json json = Json::object();
   if (const auto* joints = std::get_if<JointTarget>(&target)) {
     json["joints"] = json_of(joints->q);
   } else if (const auto* pose = std::get_if<PoseTarget>(&target)) {
-    Json rows = Json::array();
-    for (int row = 0; row < 4; ++row) {
-      const Eigen::RowVector4d values = pose->pose_base_tool.matrix().row(row);
-      rows.push_back(std::vector<double>(values.begin(), values.end()));
-    }
-    json["pose"] = rows;
+    json["pose"] = json_of(pose->pose_base_tool);
     if (pose->correction != 0.0) json["correction"] = pose->correction;
   } else {
     const Eigen::Vector3d& p = std::get<PositionTarget>(target).position;

@@ -37,11 +37,14 @@ Enum value_of(const Node& node, const Word<Enum> (&words)[N]) {
 
 [[nodiscard]] Json json_of(const JointVector& q);
 [[nodiscard]] Json json_of(const Eigen::Vector3d& vector);
+[[nodiscard]] Json json_of(const Pose& pose);
 [[nodiscard]] Json json_of(const Target& target);
 [[nodiscard]] const char* word_of(Orientation orientation);
 
 [[nodiscard]] Orientation orientation_of(const Node& node);
 [[nodiscard]] Eigen::Vector3d vector_of(const Node& node);
+/// A rotation to the last bit is left as it is: what was written reads back unchanged.
+[[nodiscard]] Pose pose_of(const Node& node);
 /// @param timed the target has its seconds beside it
 [[nodiscard]] Target target_of(const Node& node, bool timed = false);
 

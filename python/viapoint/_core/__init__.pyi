@@ -21,6 +21,8 @@ __all__: list[str] = [
     "Corner",
     "Dexterity",
     "Extremum",
+    "Fit",
+    "FrameFit",
     "Job",
     "JointLimits",
     "Knots",
@@ -36,14 +38,20 @@ __all__: list[str] = [
     "RunReport",
     "Singularity",
     "Target",
+    "TcpCalibration",
+    "ToolCalibration",
     "VelocityEllipsoid",
     "admit",
     "builtin_robots",
+    "calibrate_tcp",
+    "calibrate_tool",
     "check",
     "checked_pose",
     "error_codes",
     "fit_function",
     "fit_samples",
+    "frame_from_known_points",
+    "frame_from_points",
     "insert_knots",
     "joint_robot",
     "load_program",
@@ -312,7 +320,15 @@ class RobotModel:
         qd: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
         qdd: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
     ) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]: ...
+    def with_base(
+        self, pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[4, 4]"]
+    ) -> RobotModel: ...
     def with_limits(self, limits: JointLimits) -> RobotModel: ...
+    def with_tool(
+        self, pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[4, 4]"]
+    ) -> RobotModel: ...
+    @property
+    def base(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[4, 4]"]: ...
     @property
     def chosen(self) -> list[str]: ...
     @property
@@ -343,6 +359,8 @@ class RobotModel:
     def sources(self) -> list[str]: ...
     @property
     def title(self) -> str: ...
+    @property
+    def tool(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[4, 4]"]: ...
 
 class Configuration:
     """
@@ -446,6 +464,101 @@ class Dexterity:
     def yoshikawa(self) -> float:
         """
         sqrt(det(J J^T)).
+        """
+
+class Fit:
+    """
+    How well touched points agree with what was found from them.
+    """
+    @property
+    def largest(self) -> float:
+        """
+        [m].
+        """
+    @property
+    def residuals(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]:
+        """
+        Of each touched point, (n,) [m].
+        """
+    @property
+    def rms(self) -> float:
+        """
+        Of the residuals [m].
+        """
+    @property
+    def worst(self) -> int:
+        """
+        Index of the point that has the largest residual.
+        """
+
+class TcpCalibration:
+    """
+    The tool's point, from touching one point.
+    """
+    @property
+    def fit(self) -> Fit:
+        """
+        How well the touches agree.
+        """
+    @property
+    def point(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        The fixed point in the base frame, (3,) [m].
+        """
+    @property
+    def pose(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[4, 4]"]:
+        """
+        pose_flange_tool of a tool that stands as the flange does, (4, 4) [m].
+        """
+    @property
+    def sensitivity(self) -> float:
+        """
+        Error of the TCP where it is known least, over that of a touch.
+        """
+    @property
+    def tcp(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[3, 1]"]:
+        """
+        The tool's point in the flange frame, (3,) [m].
+        """
+    @property
+    def uncertainty(self) -> float:
+        """
+        Standard deviation of the TCP where it is known least, by the residuals [m].
+        """
+
+class ToolCalibration:
+    """
+    Point and orientation of a tool.
+    """
+    @property
+    def angle(self) -> float:
+        """
+        Between the ways that showed x and z [rad]; a right angle but for errors.
+        """
+    @property
+    def pose(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[4, 4]"]:
+        """
+        pose_flange_tool, (4, 4) [m].
+        """
+    @property
+    def tcp(self) -> TcpCalibration:
+        """
+        Where its point is, and how well that is known.
+        """
+
+class FrameFit:
+    """
+    A frame whose points are known beforehand.
+    """
+    @property
+    def fit(self) -> Fit:
+        """
+        How well the points agree.
+        """
+    @property
+    def pose(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[4, 4]"]:
+        """
+        pose_base_frame, (4, 4) [m].
         """
 
 class PoseFit:
@@ -564,6 +677,20 @@ class MotionProgram:
         file: str,
         line: typing.SupportsInt | typing.SupportsIndex,
     ) -> None: ...
+    def add_set_frame(
+        self,
+        pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[4, 4]"],
+        name: str,
+        file: str,
+        line: typing.SupportsInt | typing.SupportsIndex,
+    ) -> None: ...
+    def add_set_tool(
+        self,
+        pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[4, 4]"] | None,
+        name: str,
+        file: str,
+        line: typing.SupportsInt | typing.SupportsIndex,
+    ) -> None: ...
     def add_spline(
         self,
         points: collections.abc.Sequence[Target],
@@ -619,6 +746,12 @@ class MotionProgram:
         Step, kind of target and its array, for every target.
         """
     def to_json(self) -> str: ...
+    def tools(
+        self,
+    ) -> list[tuple[int, typing.Annotated[numpy.typing.NDArray[numpy.float64], "[4, 4]"] | None]]:
+        """
+        Step and pose_flange_tool, None for the robot's own, of every change.
+        """
     @property
     def robot(self) -> str: ...
     @property
@@ -945,6 +1078,18 @@ def builtin_robots() -> list[str]:
     Names of the built-in robots, sorted.
     """
 
+def calibrate_tcp(
+    flanges: collections.abc.Sequence[
+        typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[4, 4]"]
+    ],
+) -> TcpCalibration: ...
+def calibrate_tool(
+    flanges: collections.abc.Sequence[
+        typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[4, 4]"]
+    ],
+    along_x: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[4, 4]"],
+    along_z: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[4, 4]"],
+) -> ToolCalibration: ...
 def check(robot: RobotModel, program: MotionProgram) -> list[Problem]:
     """
     Every problem of a program, in program order.
@@ -981,6 +1126,15 @@ def fit_samples(
     tolerance: typing.SupportsFloat | typing.SupportsIndex,
     angle_tolerance: typing.SupportsFloat | typing.SupportsIndex,
 ) -> PoseFit: ...
+def frame_from_known_points(
+    known: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 3]"],
+    touched: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 3]"],
+) -> FrameFit: ...
+def frame_from_points(
+    origin: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"],
+    on_x: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"],
+    on_xy: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"],
+) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[4, 4]"]: ...
 def insert_knots(
     robot: RobotModel,
     pose0: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[4, 4]"],
@@ -997,9 +1151,9 @@ def joint_robot(limits: JointLimits) -> RobotModel:
     """
 
 def load_program(path: str) -> MotionProgram: ...
-def load_robot(name_or_path: str) -> RobotModel:
+def load_robot(name_or_path: str, tip: str = "") -> RobotModel:
     """
-    A built-in robot by name, or a .yaml or .urdf file.
+    A built-in robot by name, or a .yaml or .urdf file; tip: the link of a URDF that carries the tool.
     """
 
 def plan(robot: RobotModel, program: MotionProgram) -> PlannedMotion:

@@ -18,6 +18,16 @@ JointVector random_joints(std::mt19937& random, int joints) {
   return q;
 }
 
+Pose random_pose(std::mt19937& random) {
+  std::normal_distribution<double> normal;
+  Pose pose = Pose::Identity();
+  pose.linear() = Eigen::Quaterniond(normal(random), normal(random), normal(random), normal(random))
+                      .normalized()
+                      .toRotationMatrix();
+  pose.translation() << normal(random), normal(random), normal(random);
+  return pose;
+}
+
 Target random_target(std::mt19937& random, int joints) {
   std::normal_distribution<double> normal;
   const Eigen::Vector3d p(normal(random), normal(random), normal(random));
@@ -73,7 +83,16 @@ MotionProgram random_program(std::mt19937& random) {
   const size_t steps = 1 + random() % 8;
   for (size_t i = 0; i < steps; ++i) {
     Step step;
-    switch (random() % 8) {
+    switch (random() % 10) {
+      case 8:
+        step.what = SetFrame{random_pose(random), random() % 2 == 0 ? "table \"3\"" : ""};
+        break;
+      case 9: {
+        SetTool tool;
+        if (random() % 2 == 0) tool = {random_pose(random), "gripper"};
+        step.what = tool;
+        break;
+      }
       case 5:
         step.what = CircMove{random_target(random, joints), random_target(random, joints),
                              static_cast<Orientation>(random() % 6)};
@@ -104,6 +123,8 @@ MotionProgram random_program(std::mt19937& random) {
     }
     const bool moves = !std::holds_alternative<Wait>(step.what) &&
                        !std::holds_alternative<SetOutput>(step.what) &&
+                       !std::holds_alternative<SetFrame>(step.what) &&
+                       !std::holds_alternative<SetTool>(step.what) &&
                        !std::holds_alternative<TimedMove>(step.what);
     if (random() % 2 == 0) step.source = {"cell/α.py", 1 + static_cast<int>(random() % 99)};
     if (!moves) {

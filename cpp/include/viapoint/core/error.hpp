@@ -31,6 +31,7 @@ enum class ErrorCode {
   kUncontrolled,       ///< the arm has too few joints to hold every coordinate asked for
   kHalfTurn,           ///< orientations 180° apart: the least rotation is not unique
   kDegenerateCurve,    ///< points that define no curve (an arc's on one line), or one with a cusp
+  kDegeneratePoints,   ///< touched points too alike to tell the tool or frame that is asked for
   kZeroLength,         ///< a move that goes nowhere (warning: it is left out)
   kZoneShrunk,         ///< a zone larger than its legs allow (warning)
   kZoneIsStop,         ///< a corner where stopping is quicker, or a near reversal (warning)

@@ -17,6 +17,8 @@ struct RobotDescription {
   std::string title;  ///< one line for people
   std::vector<std::string> joint_names;
   std::vector<ChainJoint> chain;
+  /// Where the arm stands: its base seen from the frame that every pose is told in ("base frame").
+  Pose base = Pose::Identity();
   Pose flange = Pose::Identity();  ///< last joint's frame to flange
   Pose tool = Pose::Identity();    ///< flange to tool (TCP)
   JointLimits limits;
@@ -40,7 +42,7 @@ void set_robot_directory(const std::filesystem::path& directory);
 ///   name, title, units: {angle: deg | rad} (every angle in the file), axes: number of joints,
 ///   dh: standard | modified (each joint: d, a, alpha, and theta, its offset), or without dh each
 ///   joint an origin: {xyz, rpy or rotation} and an axis, or kinematics: none,
-///   flange, tool: {xyz, rpy or rotation}, coupling: {matrix, lower, upper}, sources, chosen,
+///   base, flange, tool: {xyz, rpy or rotation}, coupling: {matrix, lower, upper}, sources, chosen,
 ///   joints: list of {name, type, ..., position: [min, max], velocity, acceleration, jerk}.
 /// Lengths are in metres. `axes` must match the list, so that a file cut short is refused.
 /// @throws MotionError(kBadRobot, kBadLimits) with line and key

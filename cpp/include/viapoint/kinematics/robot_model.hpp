@@ -39,6 +39,11 @@ class RobotModel {
   [[nodiscard]] static std::shared_ptr<const RobotModel> joint_robot(const JointLimits& limits);
   /// The same arm under other limits.
   [[nodiscard]] std::shared_ptr<const RobotModel> with_limits(const JointLimits& limits) const;
+  /// The same arm with another tool in the place of its own. @throws MotionError(kUncontrolled)
+  [[nodiscard]] std::shared_ptr<const RobotModel> with_tool(const Pose& pose_flange_tool) const;
+  /// The same arm standing elsewhere: from then on every pose of it is told in the frame that
+  /// `pose_world_base` is told in. @throws MotionError(kUncontrolled)
+  [[nodiscard]] std::shared_ptr<const RobotModel> with_base(const Pose& pose_world_base) const;
 
   ~RobotModel();
   RobotModel(const RobotModel&) = delete;
@@ -69,7 +74,9 @@ class RobotModel {
  private:
   struct Kdl;
   RobotModel(RobotDescription description, bool has_kinematics);
-  /// @throws MotionError(kUncontrolled) without kinematics, kBadArgument on size or NaN
+  /// @throws MotionError(kUncontrolled) without kinematics
+  void require_kinematics() const;
+  /// @throws MotionError besides kBadArgument on size or NaN
   void require_kinematics(const JointVector& q) const;
 
   RobotDescription description_;

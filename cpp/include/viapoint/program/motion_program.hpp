@@ -87,6 +87,18 @@ struct SplineMove {
   /// Where the curve begins, if it has a beginning of its own: the arm must be there.
   std::optional<Target> start;
 };
+/// From here on poses, positions and axes are told in this frame; those of a new program in the
+/// base frame. Joints are what they are, and so is the tool's own z.
+struct SetFrame {
+  Pose pose_base_frame = Pose::Identity();
+  std::string name;
+};
+/// From here on the arm moves this tool; empty: the robot's own. The arm stops where the tool
+/// changes.
+struct SetTool {
+  std::optional<Pose> pose_flange_tool;
+  std::string name;
+};
 struct Wait {
   double seconds = 0.0;
 };
@@ -121,7 +133,9 @@ struct SourceLine {
 };
 
 struct Step {
-  std::variant<PtpMove, LinMove, CircMove, TurnMove, SplineMove, Wait, SetOutput, TimedMove> what;
+  std::variant<PtpMove, LinMove, CircMove, TurnMove, SplineMove, Wait, SetOutput, TimedMove,
+               SetFrame, SetTool>
+      what;
   MoveOptions options;
   SourceLine source;
 };
@@ -142,6 +156,9 @@ struct MotionProgram {
   LineTolerance tolerance;        ///< of its lines and curves
   std::vector<Step> steps;
 };
+
+/// The step with everything that it tells in a frame told in the base frame.
+[[nodiscard]] Step in_base(Step step, const Pose& pose_base_frame);
 
 /// JSON text of a program; numbers read back to the last bit.
 [[nodiscard]] std::string to_json(const MotionProgram& program);
