@@ -90,8 +90,8 @@ struct AxisMove {
 /// outside the limits first comes back in: the acceleration at full jerk, then the velocity by the
 /// quickest motion whose acceleration vanishes on the limit.
 /// Exact but for rounding: states meet within 1e-9 of the size of the move, also where limits lie
-/// decades apart. Digits are lost where the two jerk limits differ by a factor of more than 1e4,
-/// and where the velocity has to change by less than its own rounding.
+/// decades apart. Digits are lost where the limits of the two directions differ by a factor of more
+/// than 1e4, and where the velocity has to change by less than its own rounding.
 /// Position limits hold all the way, to 1e-9 of the size of the move. A start outside them comes in
 /// and stays in; it moves farther out only where it is too fast not to, and no farther than the
 /// quickest stop would take it. Where the quickest motion touches the limits more than twice, the
