@@ -17,6 +17,7 @@ from ._program import Program, motion_of
 from ._robot import Robot, load_robot, require_robot, require_within_limits
 from ._virtual import VirtualLoop
 from .errors import BadArgumentError, StoppedError
+from .frames import Frame
 
 if TYPE_CHECKING:
     from ._points import PointList
@@ -212,7 +213,7 @@ class Arm:
         """What real-time right could not be had, one line each, and what would give it."""
         return self._loop.shortcomings
 
-    def teach(self, name: str, points: PointList) -> Vector:
+    def teach(self, name: str, points: PointList, *, frame: Frame | None = None) -> Vector:
         """Record the present joints as the point `name` of `points`, on disk at once.
 
         Parameters
@@ -221,6 +222,8 @@ class Arm:
             The point; one of the same name is replaced.
         points : PointList
             The list, and its file.
+        frame : Frame, optional
+            The frame the point belongs to; see `PointList.record`.
 
         Returns
         -------
@@ -233,7 +236,7 @@ class Arm:
             The file cannot be written, or what stands there is damaged (and is left alone).
         """
         joints = self.joints
-        points.record(name, joints)
+        points.record(name, joints, frame=frame)
         return joints
 
 

@@ -6,10 +6,11 @@ import fcntl
 import json
 import os
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -23,11 +24,29 @@ from .errors import (
     BadProgramError,
     EmptyProgramError,
     FileError,
+    MotionError,
     OtherRobotWarning,
+    PoseError,
 )
+from .frames import Frame
 
 FORMAT = "viapoint points"
 VERSION = 1
+
+
+@dataclass(frozen=True)
+class _Point:
+    """Joints as they were taught, and the frame they were taught in as it stood then."""
+
+    q: Vector
+    frame: Frame | None = None
+
+    def json(self) -> dict[str, Any]:
+        """Return what the file holds of it."""
+        entry: dict[str, Any] = {"q": self.q.tolist()}
+        if self.frame is not None:
+            entry["frame"] = {"name": self.frame.name, "pose": self.frame.pose.tolist()}
+        return entry
 
 
 class PointList:
@@ -61,7 +80,7 @@ class PointList:
                 file=str(self.path),
                 ways_out=["To begin a new one, give its robot: PointList(path, robot)."],
             )
-        self._points: dict[str, Vector] = {}
+        self._points: dict[str, _Point] = {}
         self._fingerprint = ""
         if self.path.exists():
             name, self._fingerprint, self._points = _read(self.path, robot)
@@ -90,9 +109,52 @@ class PointList:
         if name not in self._points:
             known = ", ".join(self._points) or "none"
             raise BadArgumentError(f'{self.path} has no point "{name}"; there are: {known}.')
-        return self._points[name].copy()
+        return self._points[name].q.copy()
 
-    def record(self, name: str, q: ArrayLike) -> None:
+    def frame(self, name: str) -> Frame | None:
+        """Return the frame that a point was taught in, as it stood then, or None."""
+        self[name]
+        return self._points[name].frame
+
+    def joints_in(self, name: str, frames: Iterable[Frame]) -> Vector:
+        """Joints of a point whose frame stands elsewhere now.
+
+        Parameters
+        ----------
+        name : str
+            The point.
+        frames : iterable of Frame
+            Where frames stand now, found by their names. A point that was taught in none of them
+            stays where it is.
+
+        Returns
+        -------
+        ndarray, (n,)
+            Joints [rad or m] that hold the tool in the frame as it was taught: the solution nearest
+            to the taught joints.
+
+        Raises
+        ------
+        BadArgumentError
+            No such point.
+        UnreachableError, OutsideLimitsError
+            The point cannot be reached where its frame stands now, by the point's name.
+        """
+        q = self[name]
+        taught = self._points[name].frame
+        now = next((f for f in frames if taught is not None and f.name == taught.name), None)
+        if taught is None or now is None or np.array_equal(now.pose, taught.pose):
+            return q
+        target = now.to_base(taught.from_base(self.robot.fk(q)))
+        try:
+            return self.robot.ik(target, near=q)
+        except PoseError as error:
+            raise type(error)(
+                f'point "{name}" in the frame "{now.name}" as it stands now: {error.message}',
+                ways_out=[*error.ways_out, f'Teach "{name}" anew.'],
+            ) from None
+
+    def record(self, name: str, q: ArrayLike, *, frame: Frame | None = None) -> None:
         """Add or replace a point, on disk at once.
 
         Parameters
@@ -101,11 +163,14 @@ class PointList:
             What to call it; a known name keeps its place in the order.
         q : array_like, (n,)
             Joints [rad or m].
+        frame : Frame, optional
+            The frame it belongs to, with a name: where that frame stands elsewhere later, the point
+            goes with it (``program(frames=…)``).
 
         Raises
         ------
         BadArgumentError
-            An empty name, or joints that do not fit.
+            An empty name, joints that do not fit, or a frame without a name.
         JointLimitError, CouplingLimitError
             Joints outside the robot's limits.
         FileError, BadProgramError
@@ -114,11 +179,16 @@ class PointList:
         if not isinstance(name, str) or not name.strip():
             raise BadArgumentError(f"name is {name!r}; a point needs a name.")
         joints = vector(q, "q", self.robot.joints)
+        if frame is not None and not (isinstance(frame, Frame) and frame.name):
+            raise BadArgumentError(
+                f"frame is {frame!r}; a point is taught in a Frame that has a name.",
+                ways_out=['Use vp.frames.Frame(pose, name="table").'],
+            )
         require_within_limits(self.robot, joints, f'point "{name}"', [])
         with self._locked():
             # Another process may have taught meanwhile: what is on disk counts.
             points = self._on_disk() if self.path.exists() else dict(self._points)
-            points[name] = joints
+            points[name] = _Point(joints, frame)
             self._write(points)
 
     def remove(self, name: str) -> None:
@@ -147,6 +217,7 @@ class PointList:
         scale: float | None = None,
         zone: ZoneLike = "fine",
         name: str | None = None,
+        frames: Iterable[Frame] = (),
     ) -> Program:
         """Return a program that plays the list back.
 
@@ -165,6 +236,8 @@ class PointList:
             Zone at each point between the first and the last.
         name : str, optional
             The program's name. Default: the file's.
+        frames : iterable of Frame
+            Where the frames of the points stand now; see `joints_in`.
 
         Raises
         ------
@@ -172,6 +245,8 @@ class PointList:
             Fewer than two points to move between.
         JointLimitError, CouplingLimitError
             A point outside the robot's limits, by its name.
+        UnreachableError, OutsideLimitsError
+            A point that its frame has carried out of reach, by its name.
         BadArgumentError
             By the argument's name.
 
@@ -181,7 +256,8 @@ class PointList:
             The points were taught with other limits, another tool or another chain.
         """
         way = choice(kind, "kind", ("ptp", "lin"))
-        points = list(self._points.values())
+        moved_to = list(frames)
+        points = [self.joints_in(point, moved_to) for point in self._points]
         if len(points) < (2 if start is None else 1):
             raise EmptyProgramError(
                 f"{self.path} holds {len(points)} points; playing back needs at least two, or one "
@@ -197,7 +273,7 @@ class PointList:
                 OtherRobotWarning,
                 stacklevel=2,
             )
-        for point, q in self._points.items():
+        for point, q in zip(self._points, points, strict=True):
             way_out = [f'Teach "{point}" anew, or remove it: points.remove("{point}").']
             require_within_limits(self.robot, q, f'point "{point}"', way_out)
         program = Program(
@@ -230,25 +306,25 @@ class PointList:
         finally:
             os.close(held)
 
-    def _on_disk(self) -> dict[str, Vector]:
+    def _on_disk(self) -> dict[str, _Point]:
         _, self._fingerprint, points = _read(self.path, self.robot)
         return points
 
-    def _write(self, points: dict[str, Vector]) -> None:
+    def _write(self, points: dict[str, _Point]) -> None:
         fingerprint = self._fingerprint or self.robot.fingerprint
         document = {
             "format": FORMAT,
             "version": VERSION,
             "robot": self.robot.name,
             "robot_fingerprint": fingerprint,
-            "points": [{"name": name, "q": q.tolist()} for name, q in points.items()],
+            "points": [{"name": name, **point.json()} for name, point in points.items()],
         }
         text = json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
         _core.write_file_atomically(str(self.path), text)
         self._points, self._fingerprint = points, fingerprint
 
 
-def _read(path: Path, robot: Robot | None) -> tuple[str, str, dict[str, Vector]]:
+def _read(path: Path, robot: Robot | None) -> tuple[str, str, dict[str, _Point]]:
     """Read and check a point file: the robot's name and fingerprint, and the points."""
     try:
         document = json.loads(_core.read_file(str(path)))
@@ -274,7 +350,7 @@ def _read(path: Path, robot: Robot | None) -> tuple[str, str, dict[str, Vector]]
     if not isinstance(entries, list):
         raise _damaged(path, 'the key "points" must be a list')
     joints = robot.joints if robot is not None else None
-    points: dict[str, Vector] = {}
+    points: dict[str, _Point] = {}
     for i, entry in enumerate(entries):
         if not isinstance(entry, dict) or not isinstance(entry.get("name"), str):
             raise _damaged(path, f'points[{i}] must have a "name" and "q"')
@@ -282,11 +358,25 @@ def _read(path: Path, robot: Robot | None) -> tuple[str, str, dict[str, Vector]]
             raise _damaged(path, f'points[{i}] has the name "{entry["name"]}" a second time')
         try:
             joints = len(entry["q"]) if joints is None else joints
-            points[entry["name"]] = vector(entry["q"], f"points[{i}].q", joints)
+            q = vector(entry["q"], f"points[{i}].q", joints)
         except (BadArgumentError, KeyError, TypeError) as error:
             reason = error.message if isinstance(error, BadArgumentError) else '"q" is missing'
             raise _damaged(path, f"points[{i}]: {reason}") from None
+        try:
+            points[entry["name"]] = _Point(q, _frame_in(entry))
+        except (PoseError, BadArgumentError, KeyError, TypeError) as error:
+            reason = (
+                error.message
+                if isinstance(error, MotionError)
+                else '"frame" must have a "name" and a "pose"'
+            )
+            raise _damaged(path, f"points[{i}]: {reason}") from None
     return name, fingerprint, points
+
+
+def _frame_in(entry: dict[str, Any]) -> Frame | None:
+    frame = entry.get("frame")
+    return None if frame is None else Frame(frame["pose"], frame["name"])
 
 
 def _damaged(path: Path, reason: str, line: int | None = None) -> BadProgramError:

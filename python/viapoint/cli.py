@@ -26,6 +26,7 @@ from ._outcome import file_stem, motion_tables, run_tables, write_pictures, writ
 from ._program import Program
 from ._report import Report
 from ._robot import Robot, load_robot
+from ._robot_check import findings, joint_table, remarks
 from .errors import BadArgumentError, FileError, MotionError
 
 app = typer.Typer(
@@ -215,9 +216,15 @@ def export(script: Script, out: Folder = Path("out"), robot: RobotFile = None) -
             _say_files([path])
 
 
-@app.command()
-def robots() -> None:
-    """List the built-in robots."""
+robots_app = typer.Typer(help="List the built-in robots; explain a description.")
+app.add_typer(robots_app, name="robots")
+
+
+@robots_app.callback(invoke_without_command=True)
+def robots(context: typer.Context) -> None:
+    """List the built-in robots; ``check`` explains a description."""
+    if context.invoked_subcommand is not None:
+        return
     table = Table(title="Built-in robots", title_justify="left")
     for heading in ("name", "joints", "inverse kinematics", "title"):
         table.add_column(heading, overflow="fold")
@@ -225,6 +232,26 @@ def robots() -> None:
         robot = load_robot(name)
         table.add_row(robot.name, str(robot.joints), escape(robot.ik_family), escape(robot.title))
     console.print(table)
+
+
+@robots_app.command("check")
+def check_robot(
+    description: Annotated[
+        str, typer.Argument(metavar="FILE", help="A .yaml or .urdf file, or a built-in name")
+    ],
+    tip: Annotated[
+        str | None, typer.Option("--tip", help="The link of a URDF that carries the tool")
+    ] = None,
+) -> None:
+    """Explain a robot's description: joints, limits, solver, reach, and what is missing.
+
+    The exit code is 1 when the description cannot be used; then it says what to add.
+    """
+    with _reported(Recorder(virtual=True)):
+        robot = load_robot(description, tip=tip)
+    console.print(joint_table(robot), findings(robot))
+    for remark in remarks(robot):
+        console.print(f"[bold]note[/bold]: {escape(remark)}", soft_wrap=not console.is_terminal)
 
 
 def _say_version(wanted: bool) -> None:

@@ -202,3 +202,40 @@ def test_what_is_no_frame_and_no_tool_is_refused(puma: vp.Robot):
         joints.with_tool(TOOL)
     with pytest.raises(errors.UncontrolledError):
         joints.with_base(TOOL)
+
+
+def test_points_taught_in_a_frame_go_with_it(puma: vp.Robot, tmp_path: Path):
+    table = vp.frames.Frame(pose([0.5, 0.0, 0.1], [0, 0, 1], 0.3), "table")
+    points = vp.PointList(tmp_path / "points.json", puma)
+    with vp.connect("sim://puma560", start=HOME) as arm:
+        arm.teach("at home", points)
+        arm.teach("on the table", points, frame=table)
+    points.record("above", np.add(HOME, [0, 0.1, 0, 0, 0.1, 0]), frame=table)
+    points = vp.PointList(tmp_path / "points.json")
+    kept = points.frame("above")
+    assert kept is not None
+    assert kept.name == "table"
+    np.testing.assert_array_equal(kept.pose, table.pose)
+    assert points.frame("at home") is None
+    moved = vp.frames.Frame(pose([0.45, 0.05, 0.1], [0, 0, 1], 0.5), "table")
+    np.testing.assert_array_equal(points.joints_in("at home", [moved]), HOME)
+    np.testing.assert_array_equal(points.joints_in("above", [table]), points["above"])
+    now = puma.fk(points.joints_in("above", [moved]))
+    then = puma.fk(points["above"])
+    np.testing.assert_allclose(moved.from_base(now), table.from_base(then), atol=1e-9)
+    end = points.program(kind="lin", frames=[moved]).plan().sample().q[-1]
+    np.testing.assert_allclose(puma.fk(end), now, atol=1e-8)
+    far = vp.frames.Frame(pose([3.0, 0.0, 0.1]), "table")
+    with pytest.raises(errors.UnreachableError, match='"on the table" in the frame "table"'):
+        points.program(frames=[far])
+    with pytest.raises(errors.BadArgumentError, match="has a name"):
+        points.record("no", HOME, frame=vp.frames.Frame(np.eye(4)))
+
+
+def test_a_point_file_with_a_damaged_frame_is_refused(puma: vp.Robot, tmp_path: Path):
+    path = tmp_path / "points.json"
+    points = vp.PointList(path, puma)
+    points.record("a", HOME, frame=vp.frames.Frame(np.eye(4), "table"))
+    path.write_text(path.read_text().replace('"pose"', '"pos"'))
+    with pytest.raises(errors.BadProgramError, match='"frame" must have'):
+        vp.PointList(path)

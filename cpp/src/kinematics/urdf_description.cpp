@@ -103,17 +103,45 @@ urdf::LinkConstSharedPtr find_tip(const urdf::ModelInterface& model, const std::
   return model.getLink(leaves.front());
 }
 
+/// About or along one axis.
+bool moves(const urdf::Joint& joint) {
+  return joint.type == urdf::Joint::REVOLUTE || joint.type == urdf::Joint::CONTINUOUS ||
+         joint.type == urdf::Joint::PRISMATIC;
+}
+
+bool has_velocity(const urdf::Joint& joint) {
+  return joint.limits && joint.limits->velocity > 0.0 && std::isfinite(joint.limits->velocity);
+}
+
+/// Names every joint that cannot be moved for want of a velocity, so that one edit mends them all.
+void require_velocities(const std::vector<urdf::JointConstSharedPtr>& joints,
+                        const std::string& source) {
+  std::string first;
+  std::string others;
+  for (const auto& joint : joints) {
+    if (!moves(*joint) || has_velocity(*joint)) continue;
+    const std::string name = "\"" + joint->name + "\"";
+    if (first.empty()) {
+      first = "joint " + name;
+      first += joint->limits
+                   ? ": the velocity limit is " + std::to_string(joint->limits->velocity) +
+                         ", it must be positive and finite"
+                   : " has no <limit>";
+    } else {
+      others += (others.empty() ? "; nor have a velocity: " : ", ") + name;
+    }
+  }
+  if (first.empty()) return;
+  const std::string whose = others.empty() ? "this joint" : "these joints";
+  refuse(source, first + others,
+         {"add velocity=\"...\" (positive, rad/s or m/s) to the <limit> of " + whose},
+         ErrorCode::kBadLimits);
+}
+
+/// @pre has_velocity(joint)
 void add_limits(RobotDescription& out, const urdf::Joint& joint, const std::string& source) {
   const std::string name = "joint \"" + joint.name + "\"";
-  const std::string add = "add velocity=\"...\" (positive) to the <limit> of this joint";
-  if (!joint.limits) refuse(source, name + " has no <limit>", {add}, ErrorCode::kBadLimits);
   const urdf::JointLimits& given = *joint.limits;
-  if (!(given.velocity > 0.0) || !std::isfinite(given.velocity)) {
-    refuse(source,
-           name + ": the velocity limit is " + std::to_string(given.velocity) +
-               ", it must be positive and finite",
-           {add}, ErrorCode::kBadLimits);
-  }
   double low = given.lower;
   double high = given.upper;
   if (joint.type == urdf::Joint::CONTINUOUS) {
@@ -151,6 +179,7 @@ RobotDescription description_from_urdf(const std::string& text, const std::strin
     joints.push_back(link->parent_joint);
   }
   std::reverse(joints.begin(), joints.end());
+  require_velocities(joints, source);
 
   RobotDescription out;
   out.name = model->getName();
@@ -163,8 +192,7 @@ RobotDescription description_from_urdf(const std::string& text, const std::strin
     before = before * to_pose(joint->parent_to_joint_origin_transform);
     if (joint->type == urdf::Joint::FIXED) continue;
     const std::string name = "joint \"" + joint->name + "\"";
-    if (joint->type != urdf::Joint::REVOLUTE && joint->type != urdf::Joint::CONTINUOUS &&
-        joint->type != urdf::Joint::PRISMATIC) {
+    if (!moves(*joint)) {
       refuse(source, name +
                          " is floating or planar; only revolute, continuous, prismatic and fixed "
                          "joints are supported");

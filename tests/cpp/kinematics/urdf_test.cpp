@@ -109,6 +109,14 @@ TEST(UrdfDescription, RefusesZeroVelocityWithWhatToAdd) {
   EXPECT_TRUE(says(problem, "add velocity")) << problem.describe();
 }
 
+TEST(UrdfDescription, NamesEveryJointWithoutAVelocityAtOnce) {
+  const Problem problem = problem_of(
+      with(with(kGood, "velocity=\"0.3\"", "velocity=\"0\""), "velocity=\"2\"", "velocity=\"-1\""));
+  EXPECT_EQ(problem.code, ErrorCode::kBadLimits);
+  EXPECT_TRUE(says(problem, "nor have a velocity")) << problem.describe();
+  EXPECT_TRUE(says(problem, "these joints")) << problem.describe();
+}
+
 TEST(UrdfDescription, RefusesMissingVelocityWithWhatToAdd) {
   const Problem problem = problem_of(with(kGood, " velocity=\"0.3\"", ""));
   EXPECT_TRUE(says(problem, "velocity")) << problem.describe();
