@@ -28,13 +28,15 @@ Configuration BranchInverse::configuration_of(const ArmSides& sides) {
 }
 
 void BranchInverse::keep_confirmed(const InverseTask& task, ClosedSolutions& found) const {
+  if (found.confirmed && !found.meeting) return;
   const ClosedBranch* first = found.branches.begin();
   // Branches meet at singular poses: what is found twice is kept once. What is kept stands before
   // the one looked at.
   int kept = 0;
   ForwardWalk walk(walked_);
   found.branches.keep_if([&](const ClosedBranch& branch) {
-    if (!task.error_of(walk.pose(branch.q)).within(kPoseTolerance)) return false;
+    if (!found.confirmed && !task.error_of(walk.pose(branch.q)).within(kPoseTolerance))
+      return false;
     for (int i = 0; i < kept; ++i) {
       if (are_same(branch.q, first[i].q)) return false;
     }

@@ -21,45 +21,6 @@ std::unique_ptr<const ClosedForm> recognise_closed_form(const ForwardKinematics&
   return nullptr;
 }
 
-Elbow bend_elbow(double a, double b, double reach) {
-  const double stretched = (a + b) - reach;
-  const double folded = reach - std::abs(a - b);
-  const double missing = std::max(-stretched, -folded);
-  Elbow elbow;
-  if (missing > kBoundary) {
-    elbow.out_of_reach = missing;
-    return elbow;
-  }
-  // 1 − cos γ = (a + b − r)(a + b + r)/2ab and 1 + cos γ = (r − |a − b|)(r + |a − b|)/2ab: the
-  // factors vanish at the boundary, so that no digits are lost there.
-  const double one_minus = std::max(stretched, 0.0) * (a + b + reach);
-  const double one_plus = std::max(folded, 0.0) * (reach + std::abs(a - b));
-  elbow.solved = true;
-  elbow.cosine = (one_plus - one_minus) / (4.0 * a * b);
-  elbow.sine = std::sqrt(one_minus * one_plus) / (2.0 * a * b);
-  elbow.angle = std::atan2(elbow.sine, elbow.cosine);
-  return elbow;
-}
-
-ShoulderBranches turn_shoulder(double x, double y, double side, double held) {
-  ShoulderBranches found;
-  const double radius = std::sqrt(x * x + y * y);
-  const double inside = radius - std::abs(side);
-  if (inside < -kBoundary) {
-    found.out_of_reach = -inside;
-    return found;
-  }
-  const double forward = std::sqrt(std::max(inside, 0.0) * (radius + std::abs(side)));
-  const double direction = std::atan2(y, x);
-  const auto branch = [&](double ahead) {
-    const double q1 = radius < kOnAxis ? held : direction - std::atan2(side, ahead);
-    return ShoulderBranch{ahead, q1};
-  };
-  found.both = {branch(forward), branch(-forward)};
-  found.count = forward == 0.0 ? 1 : 2;
-  return found;
-}
-
 std::optional<Eigen::Vector3d> nearest_point(const Eigen::Vector3d& origin_a,
                                              const Eigen::Vector3d& axis_a,
                                              const Eigen::Vector3d& origin_b,

@@ -71,6 +71,9 @@ class BranchList {
 struct ClosedSolutions {
   BranchList branches;
   double out_of_reach = 0.0;  ///< how far the wrist is out of reach [m]; 0 when it is not
+  /// The form has put every branch through its own forward kinematics already.
+  bool confirmed = false;
+  bool meeting = true;  ///< two branches may be one
   /// A joint was held at a singular pose, and another value of it might do better.
   bool held = false;
 };
@@ -98,36 +101,12 @@ class ClosedForm {
 /// How exactly axes must be parallel, square or concurrent for a closed form to be used.
 inline constexpr double kExactAxes = 1e-9;
 /// A wrist beyond the boundary by no more than this is taken to be on it [m]; the forward
-/// kinematics still has to confirm the answer.
-inline constexpr double kBoundary = 1e-9;
+/// kinematics still has to confirm the answer, to kPoseTolerance.
+inline constexpr double kBoundary = 8e-10;
 /// Below this sine of the wrist angle two joints turn about one line [rad].
 inline constexpr double kWristSine = 2e-10;
 /// Below this distance a direction is not determined [m].
 inline constexpr double kOnAxis = 1e-10;
-
-/// The elbow of a planar arm with links a and b that spans `reach`, in [0, π]; 0 is stretched.
-struct Elbow {
-  bool solved = false;
-  double angle = 0.0;   ///< [rad]
-  double cosine = 1.0;  ///< of the angle
-  double sine = 0.0;
-  double out_of_reach = 0.0;  ///< [m], when not solved
-};
-[[nodiscard]] Elbow bend_elbow(double a, double b, double reach);
-
-/// The shoulder's own part: a point at `side` along axis 2 from axis 1 reaches (x, y) in two ways.
-struct ShoulderBranch {
-  double forward = 0.0;  ///< of the point, in the arm's plane, before joint 1 turns [m]
-  double q1 = 0.0;       ///< [rad]
-};
-struct ShoulderBranches {
-  int count = 0;  ///< 0, 1 (both shoulders are one) or 2
-  std::array<ShoulderBranch, 2> both;
-  double out_of_reach = 0.0;  ///< [m], when there is none
-  [[nodiscard]] const ShoulderBranch* begin() const { return both.data(); }
-  [[nodiscard]] const ShoulderBranch* end() const { return both.data() + count; }
-};
-[[nodiscard]] ShoulderBranches turn_shoulder(double x, double y, double side, double held);
 
 /// Point of line a nearest to line b; nothing when they are parallel.
 [[nodiscard]] std::optional<Eigen::Vector3d> nearest_point(const Eigen::Vector3d& origin_a,

@@ -1,6 +1,7 @@
 #include "kinematics/closed_form_inverse.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace viapoint {
@@ -16,7 +17,29 @@ bool undecided(const ClosedSolutions& found) {
 
 ClosedFormInverse::ClosedFormInverse(const ForwardKinematics& forward, const JointLimits& limits,
                                      std::unique_ptr<const ClosedForm> form)
-    : BranchInverse(forward, limits), form_(std::move(form)) {}
+    : BranchInverse(forward, limits), form_(std::move(form)) {
+  trusted_ = models_exactly();
+}
+
+bool ClosedFormInverse::models_exactly() const {
+  // The axes were compared to kExactAxes. What an arm's pose may differ by from its form's goes
+  // like the sines of the joints, so that seeded joints show its size; the form leaves ten times
+  // this much (kFormTolerance).
+  constexpr double kExact = 1e-11;
+  constexpr int kTrials = 24;
+  JointVector q(joints());
+  for (int trial = 1; trial <= kTrials; ++trial) {
+    for (int i = 0; i < joints(); ++i) q[i] = 3.0 * std::sin(1.7 * trial + 2.3 * i * trial);
+    const InverseTask task(forward_.pose(q));
+    ClosedSolutions found;
+    form_->solve(task, q, found);
+    if (!found.confirmed || found.branches.empty()) return false;
+    for (const ClosedBranch& branch : found.branches) {
+      if (!error(task, branch.q).within(kExact)) return false;
+    }
+  }
+  return true;
+}
 
 Configuration ClosedFormInverse::sides(const JointVector& q) const {
   return configuration_of(form_->sides(q));
@@ -25,6 +48,7 @@ Configuration ClosedFormInverse::sides(const JointVector& q) const {
 void ClosedFormInverse::branches(const InverseTask& task, const JointVector& held,
                                  ClosedSolutions& found) const {
   form_->solve(task, held, found);
+  found.confirmed = found.confirmed && trusted_;
   keep_confirmed(task, found);
 }
 
@@ -102,10 +126,16 @@ BranchStatus ClosedFormInverse::solve_branches(const Pose& pose_base_tool, const
   const InverseTask task(pose_base_tool);
   ClosedSolutions found;
   branches(task, near, found);
-  for (const ClosedBranch& branch : found.branches) {
+  for (ClosedBranch& branch : found.branches) {
+    if (!branch.wrist_free) {
+      bool moved = false;
+      if (!turns_.bring_near(branch.q, near, &moved)) continue;
+      if (!moved || confirmed(task, branch.q)) out.push_back(branch.q);
+      continue;
+    }
     std::optional<JointVector> best;
     each_share(branch, near, [&](const JointVector& candidate) {
-      bool moved = branch.wrist_free;
+      bool moved = true;
       const auto q = turns_.nearest(candidate, near, &moved);
       if (!q || (best && !is_nearer(*q, *best, near))) return;
       if (!moved || confirmed(task, *q)) best = *q;

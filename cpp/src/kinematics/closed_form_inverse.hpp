@@ -32,11 +32,14 @@ class ClosedFormInverse final : public BranchInverse {
   [[nodiscard]] Configuration sides(const JointVector& q) const override;
   /// The distinct branches that the forward kinematics confirms.
   void branches(const InverseTask& task, const JointVector& held, ClosedSolutions& found) const;
+  /// Whether the form's own forward kinematics is the arm's, to rounding.
+  [[nodiscard]] bool models_exactly() const;
   /// Nothing within the limits was found.
   [[noreturn]] void refuse(const InverseTask& task, const ClosedSolutions& found,
                            const JointVector& held) const;
 
   std::unique_ptr<const ClosedForm> form_;
+  bool trusted_ = false;
 };
 
 }  // namespace viapoint

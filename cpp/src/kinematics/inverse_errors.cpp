@@ -35,8 +35,14 @@ PoseError pose_error(const Pose& a, const Pose& b) {
 }
 
 bool is_pose(const Pose& pose) {
-  return pose.translation().allFinite() && off_rotation(pose) <= kPoseTolerance &&
-         pose.linear().determinant() > 0.0;
+  const auto r = pose.linear();
+  const Eigen::Vector3d x = r.col(0);
+  const Eigen::Vector3d y = r.col(1);
+  const Eigen::Vector3d z = r.col(2);
+  const auto near = [](double value) { return std::abs(value) <= kPoseTolerance; };  // NaN is not
+  const bool unit = near(x.dot(x) - 1.0) & near(y.dot(y) - 1.0) & near(z.dot(z) - 1.0);
+  const bool square = near(x.dot(y)) & near(y.dot(z)) & near(z.dot(x));
+  return unit && square && z.dot(x.cross(y)) > 0.0 && pose.translation().allFinite();
 }
 
 void require_pose(const Pose& pose) {

@@ -1,7 +1,9 @@
 #include "kinematics/joint_turns.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 #include "viapoint/core/units.hpp"
 
@@ -17,9 +19,15 @@ constexpr double kCouplingSlack = 1e-12;
 /// More turns than this of one branch are of use to nobody: the ones with the least turning stay.
 constexpr int kMostTurns = 4096;
 
+/// So few turns are taken off without a division's loss; many keep their digits with the remainder.
+constexpr double kFewTurns = 4.0;
+
 double distance_to(double value, double low, double high) {
   return std::max({0.0, low - value, value - high});
 }
+
+/// Below zero for values below zero: in a form that is gathered over joints without a branch.
+std::int64_t negative(double value) { return std::bit_cast<std::int64_t>(value); }
 
 }  // namespace
 
@@ -33,14 +41,23 @@ bool is_nearer(const JointVector& a, const JointVector& b, const JointVector& re
 double wrap_near(double angle, double reference) {
   const double apart = angle - reference;
   if (std::abs(apart) <= kPi) return angle;
-  // Few turns are taken off without a division's loss; many keep their digits with the remainder.
-  if (std::abs(apart) < 8.0 * kPi) return angle - kTurn * std::round(apart / kTurn);
+  if (std::abs(apart) < kFewTurns * kTurn) return angle - kTurn * std::round(apart / kTurn);
   return reference + std::remainder(apart, kTurn);
 }
 
 JointTurns::JointTurns(const ForwardKinematics& forward, const JointLimits& limits)
     : joints_(forward.joints()), limits_(limits) {
-  for (int i = 0; i < joints_; ++i) types_[static_cast<size_t>(i)] = forward.type(i);
+  for (int i = 0; i < joints_; ++i) {
+    const auto k = static_cast<size_t>(i);
+    types_[k] = forward.type(i);
+    low_[k] = limits.position_min[i];
+    high_[k] = limits.position_max[i];
+    lowest_[k] = limits.position_min[i] - kSnap;
+    highest_[k] = limits.position_max[i] + kSnap;
+    if (types_[k] == JointType::kPrismatic) continue;
+    turn_[k] = kTurn;
+    per_turn_[k] = 1.0 / kTurn;
+  }
 }
 
 bool JointTurns::coupled(const JointVector& q) const {
@@ -52,17 +69,25 @@ bool JointTurns::coupled(const JointVector& q) const {
 
 JointVector JointTurns::unlimited(const JointVector& branch, const JointVector& reference) const {
   JointVector q = branch;
-  for (int i = 0; i < joints_; ++i) {
-    if (types_[static_cast<size_t>(i)] == JointType::kRevolute) {
-      q[i] = wrap_near(branch[i], reference[i]);
-    }
-  }
+  wrap(q, reference);
   return q;
+}
+
+void JointTurns::wrap(JointVector& q, const JointVector& reference) const {
+  for (int i = 0; i < joints_; ++i) {
+    if (types_[static_cast<size_t>(i)] != JointType::kRevolute) continue;
+    q[i] = wrap_near(q[i], reference[i]);
+  }
 }
 
 std::optional<JointVector> JointTurns::nearest(const JointVector& branch,
                                                const JointVector& reference, bool* moved) const {
-  JointVector q = unlimited(branch, reference);
+  std::optional<JointVector> q(branch);
+  if (!bring_near(*q, reference, moved)) q.reset();
+  return q;
+}
+
+bool JointTurns::shift_inside(JointVector& q, bool* moved) const {
   for (int i = 0; i < joints_; ++i) {
     const double low = limits_.position_min[i];
     const double high = limits_.position_max[i];
@@ -72,19 +97,65 @@ std::optional<JointVector> JointTurns::nearest(const JointVector& branch,
     }
     const double outside = distance_to(q[i], low, high);
     if (outside == 0.0) continue;
-    if (outside > kSnap) return std::nullopt;
+    if (outside > kSnap) return false;
     q[i] = std::clamp(q[i], low, high);
     if (moved != nullptr) *moved = true;
   }
-  if (coupled(q)) return q;
+  return true;
+}
+
+template <int Count>
+JointTurns::OneTurn JointTurns::try_one_turn(JointVector& q, const JointVector& reference) const {
+  constexpr auto kMost = static_cast<size_t>(Count > 0 ? Count : kMaxJoints);
+  const auto count = Count > 0 ? kMost : static_cast<size_t>(joints_);
+  // Adding and taking off 1.5 · 2⁵² rounds to a whole number, to the even one of two.
+  constexpr double kRound = 6755399441055744.0;
+  std::array<double, kMost> value;
+  std::array<double, kMost> near;
+  std::copy_n(q.data(), count, value.begin());
+  std::copy_n(reference.data(), count, near.begin());
+  std::int64_t refused = 0;
+  std::int64_t open = 0;
+  for (size_t k = 0; k < count; ++k) {
+    const double turn = turn_[k];
+    const double turns = ((value[k] - near[k]) * per_turn_[k] + kRound) - kRound;
+    const double wrapped = value[k] - turn * turns;
+    const double down = wrapped > highest_[k] ? turn : 0.0;
+    const double up = wrapped < lowest_[k] ? turn : 0.0;
+    const double shifted = wrapped - down + up;
+    refused |= negative(highest_[k] - wrapped) & negative(shifted - lowest_[k]);
+    refused |= negative(wrapped - lowest_[k]) & negative(highest_[k] - shifted);
+    open |= negative(shifted - low_[k]) | negative(high_[k] - shifted);
+    open |= negative(kFewTurns - std::abs(turns));
+    value[k] = shifted;
+  }
+  if (refused < 0) return OneTurn::kRefused;
+  if (open < 0) return OneTurn::kOpen;
+  std::copy_n(value.begin(), count, q.data());
+  return OneTurn::kInside;
+}
+
+bool JointTurns::bring_near(JointVector& q, const JointVector& reference, bool* moved) const {
+  const OneTurn done = joints_ == 6   ? try_one_turn<6>(q, reference)
+                       : joints_ == 7 ? try_one_turn<7>(q, reference)
+                                      : try_one_turn<0>(q, reference);
+  if (done == OneTurn::kRefused) return false;
+  if (done == OneTurn::kOpen) {
+    wrap(q, reference);
+    if (!shift_inside(q, moved)) return false;
+  }
+  if (coupled(q)) return true;
 
   // Coupled joints: another turn of some joint may be within the limits.
   if (moved != nullptr) *moved = true;  // any of the turns may have been set on a limit
-  std::optional<JointVector> best;
+  const JointVector branch = q;
+  bool any = false;
   each(branch, reference, [&](const JointVector& candidate) {
-    if (!best || is_nearer(candidate, *best, reference)) best = candidate;
+    if (any && !is_nearer(candidate, q, reference)) return;
+    q = candidate;
+    any = true;
   });
-  return best;
+  return any;
 }
 
 JointTurns::Range JointTurns::range(int joint, double angle, double reference) const {

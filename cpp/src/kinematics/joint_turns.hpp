@@ -40,6 +40,8 @@ class JointTurns {
   [[nodiscard]] std::optional<JointVector> nearest(const JointVector& branch,
                                                    const JointVector& reference,
                                                    bool* moved = nullptr) const;
+  /// The same in place; false, with q of no use, where no turn keeps the limits. Real-time: safe.
+  [[nodiscard]] bool bring_near(JointVector& q, const JointVector& reference, bool* moved) const;
   /// Every turn of `branch` within the limits (of joints without limits: the one nearest to
   /// `reference`).
   [[nodiscard]] std::vector<JointVector> all(const JointVector& branch,
@@ -60,9 +62,24 @@ class JointTurns {
   /// Calls visit(q) for every turn of `branch` within all limits. Allocates nothing itself.
   template <typename Visit>
   void each(const JointVector& branch, const JointVector& reference, Visit&& visit) const;
+  /// q by whole turns to within π of `reference`.
+  void wrap(JointVector& q, const JointVector& reference) const;
+  /// One turn brings most joints inside or shows that none does.
+  enum class OneTurn { kInside, kRefused, kOpen };
+  /// Moves q only where it brings every joint inside. @tparam Count of joints, 0 for any
+  template <int Count>
+  [[nodiscard]] OneTurn try_one_turn(JointVector& q, const JointVector& reference) const;
+  /// @pre wrapped; the same by the turns that bring it within the limits, joint by joint
+  [[nodiscard]] bool shift_inside(JointVector& q, bool* moved) const;
   [[nodiscard]] bool coupled(const JointVector& q) const;
 
   int joints_;
+  std::array<double, kMaxJoints> turn_{};      ///< 2π, or 0 for joints that slide
+  std::array<double, kMaxJoints> per_turn_{};  ///< 1/2π, or 0
+  std::array<double, kMaxJoints> low_{};       ///< the limits
+  std::array<double, kMaxJoints> high_{};
+  std::array<double, kMaxJoints> lowest_{};  ///< the limits, and what is still set on them
+  std::array<double, kMaxJoints> highest_{};
   std::array<JointType, kMaxJoints> types_{};
   JointLimits limits_;
 };

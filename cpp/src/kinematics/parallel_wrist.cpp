@@ -1,6 +1,7 @@
 #include "kinematics/parallel_wrist.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "viapoint/core/units.hpp"
@@ -39,20 +40,20 @@ std::optional<ParallelWrist> ParallelWrist::recognise(const ForwardKinematics& f
   arm.side_ = (pose_s_base * *meeting).y();
   arm.sign3_ = axis[1].dot(axis[2]) > 0.0 ? 1.0 : -1.0;
   arm.sign4_ = axis[1].dot(axis[3]) > 0.0 ? 1.0 : -1.0;
-  arm.axis5_ = pose_s_base.linear() * axis[4];
-  arm.axis6_ = pose_s_base.linear() * axis[5];
+  // The wrist's frame: x along axis 5, y along axes 2, 3, 4.
   const Eigen::Vector3d y = Eigen::Vector3d::UnitY();
-  arm.tilt_ = std::atan2(arm.axis6_.dot(arm.axis5_.cross(y)), arm.axis6_.dot(y));
-  arm.cos_tilt_ = std::cos(arm.tilt_);
-  arm.sin_tilt_ = std::sin(arm.tilt_);
-  arm.axis65_ = arm.axis6_.cross(arm.axis5_);
-  arm.y_across_ = arm.axis6_.cross(y);
-  arm.aside_across_ = arm.axis6_.cross(arm.axis5_.cross(y));
+  arm.rotation_s_wrist_.col(0) = (pose_s_base.linear() * axis[4]).normalized();
+  arm.rotation_s_wrist_.col(1) = y;
+  arm.rotation_s_wrist_.col(2) = arm.rotation_s_wrist_.col(0).cross(y);
+  const Eigen::Vector3d axis6 = arm.rotation_s_wrist_.transpose() * pose_s_base.linear() * axis[5];
+  arm.tilt_ = std::atan2(axis6.z(), axis6.y());
   arm.upper_length_ = std::abs(arm.upper_);
   arm.fore_length_ = std::abs(arm.fore_);
   arm.upper_angle_ = std::arg(arm.upper_);
   arm.turn3_zero_ = arm.upper_angle_ - std::arg(arm.fore_);
-  arm.rotation_s_tool_ = pose_s_base.linear() * zero.pose_base_tool.linear();
+  arm.rotation_tool_wrist_ = zero.pose_base_tool.linear().transpose() *
+                             pose_s_base.linear().transpose() * arm.rotation_s_wrist_ *
+                             Eigen::AngleAxisd(arm.tilt_, Eigen::Vector3d::UnitX());
   arm.meeting_in_tool_ = zero.pose_base_tool.inverse(Eigen::Isometry) * *meeting;
   return arm;
 }
@@ -63,85 +64,182 @@ std::string ParallelWrist::family() const {
 
 void ParallelWrist::solve(const InverseTask& task, const JointVector& held,
                           ClosedSolutions& solutions) const {
-  const Pose pose_s_tool = pose_s_base_ * task.goal;
-  const Eigen::Vector3d meeting = pose_s_tool * meeting_in_tool_;
-  const Eigen::Matrix3d turned = pose_s_tool.linear() * rotation_s_tool_.transpose();
-  const ShoulderBranches shoulders = turn_shoulder(meeting.x(), meeting.y(), side_, held[0]);
-  solutions.out_of_reach = shoulders.out_of_reach;
-  for (const ShoulderBranch& shoulder : shoulders) {
-    // Without joint 1: R = Ry(S) R5 R6 with S = q2 ± q3 ± q4, and turns about y leave y as it is.
-    const Eigen::Matrix3d rotation = about_z(-shoulder.q1) * turned;
-    const Eigen::Vector3d direction = rotation * axis6_;
-    const double sine = std::hypot(direction.x(), direction.z());
-    const Planar place = Planar(meeting.z(), shoulder.forward) - shoulder_;
-    if (sine < kWristSine) {  // axis 6 along axes 2, 3, 4
-      solutions.held = true;
-      const double bend = direction.y() > 0.0 ? 0.0 : kPi;
-      solve_arm(rotation, shoulder.q1, place, {bend - tilt_, held[5], sine}, held, solutions);
-      continue;
-    }
-    // y seen from the tool: Rᵀ y = R6ᵀ (R5ᵀ y). Both sides are taken across axis 6 before they are
-    // compared: near the singularity they differ in the last digits only.
-    const Eigen::Vector3d seen = axis6_.cross(rotation.row(1).transpose());
-    const double bend = std::atan2(sine, direction.y());
-    for (const double theta : {sine, -sine}) {
-      const double c5 = direction.y() * cos_tilt_ + theta * sin_tilt_;  // of q5 = ±bend − tilt
-      const double s5 = theta * cos_tilt_ - direction.y() * sin_tilt_;
-      const Eigen::Vector3d aim = c5 * y_across_ - s5 * aside_across_;
-      const double q6 = std::atan2(axis6_.dot(seen.cross(aim)), seen.dot(aim));
-      const double q5 = std::copysign(bend, theta) - tilt_;
-      solve_arm(rotation, shoulder.q1, place, {q5, q6, sine}, held, solutions);
-    }
-  }
-  if (!solutions.branches.empty()) solutions.out_of_reach = 0.0;
-}
-
-void ParallelWrist::solve_arm(const Eigen::Matrix3d& rotation, double q1, const Planar& place,
-                              Wrist wrist, const JointVector& held,
-                              ClosedSolutions& solutions) const {
-  // R5 leaves axis 5 where it is: R R6ᵀ axis5 = Ry(S) axis5, square to y.
-  const auto sum_with = [&](double q6) {
-    const Eigen::Vector3d carried = rotation * (std::cos(q6) * axis5_ - std::sin(q6) * axis65_);
-    const Planar turn(axis5_.dot(carried), axis5_.z() * carried.x() - axis5_.x() * carried.z());
-    return turn / std::sqrt(std::norm(turn));
-  };
-  // Joints 2 and 3 carry axis 4 to its place, joint 4 makes up the sum.
-  Planar turn = sum_with(wrist.q6);
-  Planar target = place - turn * hand_;
-  Elbow elbow = bend_elbow(upper_length_, fore_length_, std::sqrt(std::norm(target)));
-  if (!elbow.solved) {
-    // Near alignment the pose's rounding leaves q6 open by about rounding / sine: within that the
-    // wrist turns so far that the arm reaches.
-    constexpr double kRounding = 1e-14;
-    const Planar moved = Planar(0.0, -1.0) * turn * hand_;  // of the target, with the sum
-    const double rate = std::real(std::conj(target) * moved) / std::abs(target);
-    const bool far = std::abs(target) > upper_length_;
-    const double shift = (far ? -1.0 : 1.0) * elbow.out_of_reach / rate;
-    if (std::abs(shift) < kRounding / std::max(wrist.sine, kRounding)) {
-      const double way = rotation.row(1).dot(axis6_) > 0.0 ? -1.0 : 1.0;
-      wrist.q6 += way * shift;
-      turn = sum_with(wrist.q6);
-      target = place - turn * hand_;
-      elbow = bend_elbow(upper_length_, fore_length_, std::abs(target));
-    }
-  }
-  if (!elbow.solved) {
-    double& missing = solutions.out_of_reach;
-    missing = missing == 0.0 ? elbow.out_of_reach : std::min(missing, elbow.out_of_reach);
+  const Eigen::Matrix3d rotation = pose_s_base_.linear() * task.goal.linear();
+  const Eigen::Vector3d meeting =
+      pose_s_base_ * task.goal.translation() + rotation * meeting_in_tool_;
+  solutions.confirmed = true;
+  const ShoulderTurns shoulder = turn_shoulder(meeting.x(), meeting.y(), side_, held[0]);
+  if (shoulder.missing > kBoundary) {
+    solutions.out_of_reach = shoulder.missing;
     return;
   }
-  const double sum = std::arg(turn);
-  const bool folded = std::norm(target) < kOnAxis * kOnAxis;
-  for (const double side : {1.0, -1.0}) {
-    const Planar span(upper_length_ + fore_length_ * elbow.cosine,
-                      side * fore_length_ * elbow.sine);
-    const double turn3 = side * elbow.angle + turn3_zero_;
-    const double q2 = folded ? held[1] : std::arg(target * std::conj(span)) - upper_angle_;
-    ClosedBranch& branch = solutions.branches.add();
-    branch.q.resize(6);
-    branch.q << q1, q2, sign3_ * turn3, sign4_ * (sum - q2 - turn3), wrist.q5, wrist.q6;
-    if (elbow.angle == 0.0) break;  // stretched: both elbows are one
+  WristLanes wrist = turn_wrist(shoulder, rotation * rotation_tool_wrist_, held[5]);
+  const PlaceLanes place{meeting.z() - shoulder_.real(),
+                         shoulder.forward * in_pairs({1.0, -1.0}) - shoulder_.imag()};
+  ArmLanes arm = reach_arm(wrist, place, held[1]);
+  if (nudge_wrist(arm, wrist)) arm = reach_arm(wrist, place, held[1]);
+  const Lanes place_off = (arm.off_square + shoulder.off_square).sqrt();
+  const Lanes off = place_off + wrist.angle_off * meeting_in_tool_.norm();
+
+  enum : size_t { kQ1 = 0, kTheta = 2, kQ6 = 4, kSum = 8, kBend = 12, kUp = 16, kDown = 20 };
+  AngleLanes<24> angles;
+  angles.put(kQ6, wrist.q6);
+  angles.put(kSum, wrist.sum);
+  angles.put(kBend, arm.bend);
+  angles.put(kUp, arm.up);
+  angles.put(kDown, arm.down);
+  for (const Eigen::Index which : {0, 1}) {
+    const auto k = static_cast<size_t>(which);
+    angles.put(kQ1 + k, shoulder.cosine[which], shoulder.sine[which]);
+    angles.put(kTheta + k, wrist.theta.cosine[2 * which], wrist.theta.sine[2 * which]);
   }
+  angles.solve();
+
+  double missing = 0.0;
+  bool one = shoulder.meet;
+  for (size_t lane = 0; lane < 4; ++lane) {
+    const auto k = static_cast<Eigen::Index>(lane);
+    const bool flipped = lane % 2 == 1;
+    if (wrist.sine[k] < kWristSine) {
+      solutions.held = true;
+      if (flipped) continue;  // both wrists are one
+    }
+    if (arm.missing[k] > kBoundary) {
+      missing = missing == 0.0 ? arm.missing[k] : std::min(missing, arm.missing[k]);
+      continue;
+    }
+    if (!(off[k] <= kFormTolerance && wrist.angle_off[k] <= kFormTolerance)) continue;
+    one = one || arm.bend.sine[k] < kMeeting || wrist.sine[k] < kMeeting;
+    const double theta = angles[kTheta + lane / 2];
+    for (const bool down : {false, true}) {
+      const double turn3 = (down ? -angles[kBend + lane] : angles[kBend + lane]) + turn3_zero_;
+      const double q2 = angles[(down ? kDown : kUp) + lane] - upper_angle_;
+      ClosedBranch& branch = solutions.branches.add();
+      branch.q.resize(6);
+      branch.q[0] = angles[kQ1 + lane / 2];
+      branch.q[1] = q2;
+      branch.q[2] = sign3_ * turn3;
+      branch.q[3] = sign4_ * (angles[kSum + lane] - q2 - turn3);
+      branch.q[4] = (flipped ? -theta : theta) - tilt_;
+      branch.q[5] = angles[kQ6 + lane];
+    }
+  }
+  solutions.meeting = one;
+  if (solutions.branches.empty()) solutions.out_of_reach = missing;
+}
+
+ParallelWrist::WristLanes ParallelWrist::turn_wrist(const ShoulderTurns& shoulder,
+                                                    const Eigen::Matrix3d& goal,
+                                                    double held) const {
+  // Without joint 1, in the wrist's frame: N = Wᵀ Rz(−q1) goal = Ry(S) Rx(θ) Ry(q6), with
+  // S = q2 ± q3 ± q4: turns about y leave y as it is.
+  WristLanes out;
+  const LaneTurn first{in_pairs(shoulder.cosine), in_pairs(shoulder.sine)};
+  for (int j = 0; j < 3; ++j) {
+    const Lanes x = first.cosine * goal(0, j) + first.sine * goal(1, j);
+    const Lanes y = first.cosine * goal(1, j) - first.sine * goal(0, j);
+    for (int i = 0; i < 3; ++i) {
+      out.n[static_cast<size_t>(i)][static_cast<size_t>(j)] = rotation_s_wrist_(0, i) * x +
+                                                              rotation_s_wrist_(1, i) * y +
+                                                              rotation_s_wrist_(2, i) * goal(2, j);
+    }
+  }
+  const auto& n = out.n;
+  out.sine = (n[1][0] * n[1][0] + n[1][2] * n[1][2]).sqrt();
+  // The middle row is (sin θ sin q6, cos θ, −sin θ cos q6), and θ has either sign.
+  const Lanes side(1.0, -1.0, 1.0, -1.0);
+  const Lanes scale = side * out.sine.max(kWristSine).inverse();
+  out.q6 = {-n[1][2] * scale, n[1][0] * scale};
+  if ((out.sine < kWristSine).any()) {  // axis 6 along axes 2, 3, 4: joint 6 stays
+    const double c = std::cos(held);
+    const double s = std::sin(held);
+    out.q6.cosine = (out.sine < kWristSine).select(c, out.q6.cosine);
+    out.q6.sine = (out.sine < kWristSine).select(s, out.q6.sine);
+  }
+  finish_wrist(out);
+  return out;
+}
+
+void ParallelWrist::finish_wrist(WristLanes& wrist) {
+  // With q6 known the others follow without loss, however small the sine: M = N Ry(−q6) =
+  // Ry(S) Rx(θ), whose first column is (cos S, 0, −sin S).
+  const auto& n = wrist.n;
+  std::array<Lanes, 3> left;
+  std::array<Lanes, 3> right;
+  for (size_t i = 0; i < 3; ++i) {
+    left[i] = wrist.q6.cosine * n[i][0] + wrist.q6.sine * n[i][2];
+    right[i] = wrist.q6.cosine * n[i][2] - wrist.q6.sine * n[i][0];
+  }
+  wrist.sum = LaneTurn::along(left[0], -left[2]);
+  wrist.theta = LaneTurn::along(n[1][1], -right[1]);
+  // The forward kinematics of what was found against M: ‖A − B‖ = √2 · angle, for small ones.
+  const auto square = [](const Lanes& value) { return value * value; };
+  const LaneTurn& s = wrist.sum;
+  const LaneTurn& t = wrist.theta;
+  const Lanes sum = square(left[0] - s.cosine) + square(left[1]) + square(left[2] + s.sine) +
+                    square(n[0][1] - s.sine * t.sine) + square(n[1][1] - t.cosine) +
+                    square(n[2][1] - s.cosine * t.sine) + square(right[0] - s.sine * t.cosine) +
+                    square(right[1] + t.sine) + square(right[2] - s.cosine * t.cosine);
+  wrist.angle_off = (0.5 * sum).sqrt();
+}
+
+ParallelWrist::ArmLanes ParallelWrist::reach_arm(const WristLanes& wrist, const PlaceLanes& place,
+                                                 double held) const {
+  // Joints 2 and 3 carry axis 4 to its place, joint 4 makes up the sum.
+  const LaneTurn& sum = wrist.sum;
+  ArmLanes arm;
+  arm.target_z = place.z - (sum.cosine * hand_.real() - sum.sine * hand_.imag());
+  arm.target_x = place.x - (sum.sine * hand_.real() + sum.cosine * hand_.imag());
+  arm.span = (arm.target_z * arm.target_z + arm.target_x * arm.target_x).sqrt();
+  const LaneElbow elbow = bend_elbow(upper_length_, fore_length_, arm.span, Lanes::Ones());
+  arm.bend = elbow.bend;
+  arm.missing = elbow.missing;
+  const Lanes span_z = upper_length_ + fore_length_ * arm.bend.cosine;
+  const Lanes span_x = fore_length_ * arm.bend.sine;
+  // The upper arm's turn carries (span_z, ±span_x) to the target.
+  const Lanes zz = arm.target_z * span_z;
+  const Lanes xx = arm.target_x * span_x;
+  const Lanes xz = arm.target_x * span_z;
+  const Lanes zx = arm.target_z * span_x;
+  arm.up = LaneTurn::along(zz + xx, xz - zx);
+  arm.down = LaneTurn::along(zz - xx, xz + zx);
+  for (int lane = 0; lane < 4; ++lane) {
+    if (arm.span[lane] >= kOnAxis) continue;  // folded: joint 2 stays
+    arm.up.cosine[lane] = arm.down.cosine[lane] = std::cos(held + upper_angle_);
+    arm.up.sine[lane] = arm.down.sine[lane] = std::sin(held + upper_angle_);
+  }
+  const auto missed = [&](const LaneTurn& turn, const Lanes& x) -> Lanes {
+    const Lanes off_z = turn.cosine * span_z - turn.sine * x - arm.target_z;
+    const Lanes off_x = turn.sine * span_z + turn.cosine * x - arm.target_x;
+    return off_z * off_z + off_x * off_x;
+  };
+  arm.off_square = missed(arm.up, span_x).max(missed(arm.down, -span_x));
+  return arm;
+}
+
+bool ParallelWrist::nudge_wrist(const ArmLanes& arm, WristLanes& wrist) const {
+  // Near alignment the pose's rounding leaves q6 open by about rounding / sine: within that the
+  // wrist turns so far that the arm reaches.
+  constexpr double kRounding = 1e-14;
+  bool nudged = false;
+  for (int lane = 0; lane < 4; ++lane) {
+    if (arm.missing[lane] <= 0.0 || wrist.sine[lane] > kRounding / kBoundary) continue;
+    const Planar turn(wrist.sum.cosine[lane], wrist.sum.sine[lane]);
+    const Planar target(arm.target_z[lane], arm.target_x[lane]);
+    const Planar moved = Planar(0.0, -1.0) * turn * hand_;  // of the target, with the sum
+    const double rate = std::real(std::conj(target) * moved) / arm.span[lane];
+    const bool far = arm.span[lane] > upper_length_;
+    const double shift = (far ? -1.0 : 1.0) * arm.missing[lane] / rate;
+    if (!(std::abs(shift) < kRounding / std::max(wrist.sine[lane], kRounding))) continue;
+    const double way = wrist.n[1][1][lane] > 0.0 ? -1.0 : 1.0;
+    const Planar q6 =
+        Planar(wrist.q6.cosine[lane], wrist.q6.sine[lane]) * std::polar(1.0, way * shift);
+    wrist.q6.cosine[lane] = q6.real();
+    wrist.q6.sine[lane] = q6.imag();
+    nudged = true;
+  }
+  if (nudged) finish_wrist(wrist);
+  return nudged;
 }
 
 ArmSides ParallelWrist::sides(const JointVector& q) const {

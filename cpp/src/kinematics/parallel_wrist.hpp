@@ -6,11 +6,13 @@
 /// Recognised: axis 1 ⟂ axis 2 ∥ 3 ∥ 4, 4 ⟂ 5 ⟂ 6, axes 5 and 6 through one point.
 #pragma once
 
+#include <array>
 #include <complex>
 #include <optional>
 #include <string>
 
 #include "kinematics/closed_form.hpp"
+#include "kinematics/planar_lanes.hpp"
 
 namespace viapoint {
 
@@ -28,28 +30,48 @@ class ParallelWrist final : public ClosedForm {
   /// A point of the arm's plane as z + ix: a turn about y by θ multiplies it by e^{iθ}.
   using Planar = std::complex<double>;
 
-  /// The wrist's joints, and the sine of the angle between axis 6 and axes 2, 3, 4.
-  struct Wrist {
-    double q5, q6, sine;
+  // Lanes: shoulder before, wrist one way and flipped; shoulder behind, the same.
+
+  struct WristLanes {
+    std::array<std::array<Lanes, 3>, 3> n;  ///< the tool without joint 1: Ry(sum) Rx(theta) Ry(q6)
+    LaneTurn sum;                           ///< of joints 2, 3 and 4
+    LaneTurn theta;                         ///< from axes 2, 3, 4 to axis 6
+    LaneTurn q6;
+    Lanes sine;       ///< of theta, without its sign and before rounding
+    Lanes angle_off;  ///< how far the tool misses its orientation [rad]
+  };
+  /// Where the meeting point is to be, seen from axis 2 [m].
+  struct PlaceLanes {
+    double z;
+    Lanes x;
+  };
+  /// Joints 2 and 3, with the elbow up and down.
+  struct ArmLanes {
+    Lanes target_z, target_x;  ///< where axis 4 is to be, seen from axis 2 [m]
+    Lanes span;                ///< how far that is [m]
+    LaneTurn bend;
+    LaneTurn up, down;  ///< direction of the upper arm
+    Lanes missing;      ///< out of reach; solved up to kBoundary [m]
+    Lanes off_square;   ///< how far axis 4 misses its place, squared [m²]
   };
 
   ParallelWrist() = default;
-  /// Joints 2, 3, 4 for a wrist. @param rotation what is left of the tool's without joint 1
-  /// @param place of the meeting point seen from axis 2
-  void solve_arm(const Eigen::Matrix3d& rotation, double q1, const Planar& place, Wrist wrist,
-                 const JointVector& held, ClosedSolutions& solutions) const;
+  /// @param goal the tool's orientation; @param held joint 6 where the wrist leaves it free [rad]
+  [[nodiscard]] WristLanes turn_wrist(const ShoulderTurns& shoulder, const Eigen::Matrix3d& goal,
+                                      double held) const;
+  /// What follows from joint 6.
+  static void finish_wrist(WristLanes& wrist);
+  /// @param held joint 2 where the folded arm leaves it free [rad]
+  [[nodiscard]] ArmLanes reach_arm(const WristLanes& wrist, const PlaceLanes& place,
+                                   double held) const;
+  /// Turns wrists by less than the pose's rounding where that makes the arm reach.
+  [[nodiscard]] bool nudge_wrist(const ArmLanes& arm, WristLanes& wrist) const;
 
   Pose pose_s_base_ = Pose::Identity();
-  Eigen::Vector3d meeting_in_tool_ = Eigen::Vector3d::Zero();      ///< of axes 5 and 6, in the tool
-  Eigen::Matrix3d rotation_s_tool_ = Eigen::Matrix3d::Identity();  ///< at q = 0
-  Eigen::Vector3d axis5_ = Eigen::Vector3d::UnitZ();               ///< in S, at q = 0
-  Eigen::Vector3d axis6_ = Eigen::Vector3d::UnitY();
-  Eigen::Vector3d axis65_ = Eigen::Vector3d::Zero();        ///< axis 6 × axis 5
-  Eigen::Vector3d y_across_ = Eigen::Vector3d::Zero();      ///< axis 6 × y
-  Eigen::Vector3d aside_across_ = Eigen::Vector3d::Zero();  ///< axis 6 × (axis 5 × y)
-  double cos_tilt_ = 1.0;
-  double sin_tilt_ = 0.0;
-  double upper_length_ = 0.0;  ///< of upper_ [m]
+  Eigen::Vector3d meeting_in_tool_ = Eigen::Vector3d::Zero();  ///< of axes 5 and 6, in the tool
+  Eigen::Matrix3d rotation_tool_wrist_ = Eigen::Matrix3d::Identity();  ///< with the wrist straight
+  Eigen::Matrix3d rotation_s_wrist_ = Eigen::Matrix3d::Identity();     ///< x: axis 5, y: axis 4
+  double upper_length_ = 0.0;                                          ///< of upper_ [m]
   double fore_length_ = 0.0;
   double upper_angle_ = 0.0;  ///< of upper_, from z towards x [rad]
   double turn3_zero_ = 0.0;   ///< angle from forearm to upper arm at q = 0 [rad]

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "kinematics/closed_form.hpp"
+#include "kinematics/planar_lanes.hpp"
 
 namespace viapoint {
 
@@ -26,9 +27,18 @@ class SphericalWrist final : public ClosedForm {
 
  private:
   SphericalWrist() = default;
-  /// @param before the wrist's orientation when joint 1 is taken away
-  void solve_wrist(const Eigen::Matrix3d& before, const Eigen::Vector3d& arm,
-                   const JointVector& held, BranchList& out) const;
+  /// The wrist of four arms, bent one way.
+  struct WristLanes {
+    LaneTurn q4;
+    LaneTurn theta;  ///< from axis 4 to axis 6, in [0, π]
+    LaneTurn q6;
+    Lanes sine;       ///< of theta, before rounding; small where the two axes are in line
+    Lanes angle_off;  ///< how far the tool misses its orientation [rad]
+  };
+  /// @param first joint 1; @param fore joints 2 and 3 together; @param goal the tool's orientation
+  /// @param held joint 4 where the wrist leaves it free [rad]
+  [[nodiscard]] WristLanes turn_wrist(const LaneTurn& first, const LaneTurn& fore,
+                                      const Eigen::Matrix3d& goal, double held) const;
 
   // Frame S: origin on axis 1 at the height of axis 2, z along axis 1, y along axis 2.
   Pose pose_s_base_ = Pose::Identity();
@@ -41,6 +51,7 @@ class SphericalWrist final : public ClosedForm {
   double fore_ = 0.0;         ///< axis 3 to wrist centre [m]
   double upper_angle_ = 0.0;  ///< direction of the upper arm at q = 0, from z towards x [rad]
   double fore_angle_ = 0.0;   ///< direction of the forearm at q = 0 [rad]
+  LaneTurn fore_zero_;        ///< turn by -fore_angle_
   double elbow_sign_ = 1.0;   ///< axis 3 along or against axis 2
   double tilt_ = 0.0;         ///< axis 6 from axis 4, about axis 5, at q = 0 [rad]
 };
