@@ -11,13 +11,6 @@ namespace {
 /// below the governor's own slack.
 constexpr double kRounding = 1e-10;
 
-constexpr Range kNothing{1e300, -1e300};
-
-void include(Range& range, const Range& other) noexcept {
-  range.low = std::min(range.low, other.low);
-  range.high = std::max(range.high, other.high);
-}
-
 /// Range of a quantity that has the values a, b at the ends of `time` and changes no faster than
 /// `speed` between them. Where it does so all the way, that is [a, b].
 Range between(double a, double b, double speed, double time, double limit) noexcept {
@@ -79,7 +72,11 @@ double snap_bound(const TrajectoryPiece& piece, const TimingBounds& timing,
 }  // namespace
 
 Lookahead::Lookahead(const JointLimits& limits, double cell)
-    : joints_(limits.joints()), limits_(limits), width_(cell), cells_(kCells) {}
+    : joints_(limits.joints()),
+      pairs_(static_cast<std::size_t>((joints_ + 1) / 2)),
+      limits_(limits),
+      width_(cell),
+      cells_(kCells) {}
 
 void Lookahead::begin(const Trajectory& trajectory) noexcept VIAPOINT_NONBLOCKING {
   trajectory_ = &trajectory;
@@ -109,13 +106,18 @@ bool Lookahead::ranges(double from, double to,
   const auto begin = static_cast<std::int64_t>(std::floor(from / width_));
   const auto last = static_cast<std::int64_t>(std::floor(to / width_));
   if (begin < first_ || last >= end_) return false;
-  out = cells_[static_cast<std::size_t>(begin % kCells)];
+  const DerivativeRanges& start = cells_[static_cast<std::size_t>(begin % kCells)];
+  for (std::size_t p = 0; p < pairs_; ++p) {
+    out.first.pair[p] = start.first.pair[p];
+    out.second.pair[p] = start.second.pair[p];
+    out.third.pair[p] = start.third.pair[p];
+  }
   for (std::int64_t c = begin + 1; c <= last; ++c) {
     const DerivativeRanges& cell = cells_[static_cast<std::size_t>(c % kCells)];
-    for (std::size_t i = 0; i < static_cast<std::size_t>(joints_); ++i) {
-      include(out.first[i], cell.first[i]);
-      include(out.second[i], cell.second[i]);
-      include(out.third[i], cell.third[i]);
+    for (std::size_t p = 0; p < pairs_; ++p) {
+      out.first.pair[p].include(cell.first.pair[p]);
+      out.second.pair[p].include(cell.second.pair[p]);
+      out.third.pair[p].include(cell.third.pair[p]);
     }
   }
   return true;
@@ -123,8 +125,9 @@ bool Lookahead::ranges(double from, double to,
 
 void Lookahead::begin_cell() noexcept VIAPOINT_NONBLOCKING {
   DerivativeRanges& cell = cells_[static_cast<std::size_t>(end_ % kCells)];
-  for (std::size_t i = 0; i < static_cast<std::size_t>(joints_); ++i) {
-    cell.first[i] = cell.second[i] = cell.third[i] = kNothing;
+  constexpr Range kNowhere{1e300, -1e300};
+  for (JointRanges* ranges : {&cell.first, &cell.second, &cell.third}) {
+    for (int j = 0; j < joints_; ++j) ranges->set(j, kNowhere);
   }
   begun_ = true;
 }
@@ -163,18 +166,16 @@ void Lookahead::add_piece(const TrajectoryPiece& piece, double from, double to,
       const Range second =
           between(a.qdd[j], b.qdd[j], magnitude(third), half, limits_.acceleration[j]);
       const Range first = between(a.qd[j], b.qd[j], magnitude(second), half, limits_.velocity[j]);
-      include(cell.first[i], first);
-      include(cell.second[i], second);
-      include(cell.third[i], third);
+      cell.first.include(j, first);
+      cell.second.include(j, second);
+      cell.third.include(j, third);
     }
   }
 }
 
 void Lookahead::add_rest(DerivativeRanges& cell) const noexcept VIAPOINT_NONBLOCKING {
-  for (std::size_t i = 0; i < static_cast<std::size_t>(joints_); ++i) {
-    include(cell.first[i], Range{});
-    include(cell.second[i], Range{});
-    include(cell.third[i], Range{});
+  for (JointRanges* ranges : {&cell.first, &cell.second, &cell.third}) {
+    for (int j = 0; j < joints_; ++j) ranges->include(j, Range{});
   }
 }
 

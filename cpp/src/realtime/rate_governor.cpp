@@ -9,7 +9,7 @@ namespace {
 
 /// Rates that differ by less are the same: a step of this size is far below every limit's slack.
 constexpr double kSameRate = 1e-12;
-/// Relative slack of the limits for rounding, as small as that of the planner.
+/// A step of the way back that comes so near to slope 0 is one that lands there.
 constexpr double kRounding = 1e-9;
 /// Largest change of the rate in a cycle, and cycles to get there, where the joints would allow
 /// more (at rest they allow anything).
@@ -21,65 +21,35 @@ constexpr double kWeaker = 0.9;
 constexpr int kTrials = 5;
 constexpr std::array<double, kTrials> kShrink = {0.8, 0.5, 0.5, 0.5, 0.0};
 
-Range product(const Range& a, const Range& b) noexcept {
-  const double p1 = a.low * b.low, p2 = a.low * b.high, p3 = a.high * b.low, p4 = a.high * b.high;
-  return {std::min({p1, p2, p3, p4}), std::max({p1, p2, p3, p4})};
-}
-
-/// Narrows `x` to where f x <= most for every f in `factor`; false where there is no such x.
-bool narrow(Range& x, const Range& factor, double most) noexcept {
-  if (most >= 0.0) {
-    if (factor.high > 0.0 && factor.high * x.high > most) x.high = most / factor.high;
-    if (factor.low < 0.0 && factor.low * x.low > most) x.low = most / factor.low;
-    return x.low <= x.high;
-  }
-  if (factor.low > 0.0) {
-    x.high = std::min(x.high, most / factor.low);
-  } else if (factor.high < 0.0) {
-    x.low = std::max(x.low, most / factor.high);
-  } else {
-    return false;
-  }
-  return x.low <= x.high;
-}
-
 Range hull(double a, double b) noexcept { return {std::min(a, b), std::max(a, b)}; }
+
+/// Takes ρ and α of `stretch` from a motion with γ = `gamma` that begins at `from`; false where ρ
+/// would leave [0, 1].
+bool take(RateStretch& stretch, const RateState& from, const RateState& to, double gamma) noexcept {
+  Range rate = hull(from.rate, to.rate);
+  if (from.slope * to.slope < 0.0) {
+    const double turn = from.rate - 0.5 * from.slope * from.slope / gamma;
+    rate.low = std::min(rate.low, turn);
+    rate.high = std::max(rate.high, turn);
+  }
+  if (rate.low < -kSameRate || rate.high > 1.0 + kSameRate) return false;
+  stretch.rate = {std::clamp(rate.low, 0.0, 1.0), std::clamp(rate.high, 0.0, 1.0)};
+  stretch.slope = hull(from.slope, to.slope);
+  stretch.curvature = gamma;
+  return true;
+}
 
 }  // namespace
 
-/// One stretch of constant γ: the ranges of everything that the joints' motion is made of.
-struct RateGovernor::Stretch {
-  DerivativeRanges path;
-  Range rate, slope;
-  double curvature = 0.0;
-
-  /// Takes ρ and α from a stretch that begins at `from`; false where ρ would leave [0, 1].
-  bool take(const RateState& from, const RateState& to, double gamma) noexcept {
-    rate = hull(from.rate, to.rate);
-    slope = hull(from.slope, to.slope);
-    curvature = gamma;
-    if (from.slope * to.slope < 0.0) {
-      const double turn = from.rate - 0.5 * from.slope * from.slope / gamma;
-      rate.low = std::min(rate.low, turn);
-      rate.high = std::max(rate.high, turn);
-    }
-    if (rate.low < -kSameRate || rate.high > 1.0 + kSameRate) return false;
-    rate.low = std::clamp(rate.low, 0.0, 1.0);
-    rate.high = std::clamp(rate.high, 0.0, 1.0);
-    return true;
-  }
-};
-
 RateGovernor::RateGovernor(const JointLimits& limits, double cycle)
-    : joints_(limits.joints()),
-      limits_(limits),
+    : limits_(limits),
       cycle_(cycle),
       max_slope_(kMaxRateStep / cycle),
       max_curvature_(max_slope_ / (kCyclesToMaxSlope * cycle)) {
   // How long the slowest joint takes to build up its acceleration, or to turn round a rate under a
   // jerk that the motion itself uses up (a quarter swing of ρ'' = -3 J/v ρ).
   double longest = 0.0;
-  for (int i = 0; i < joints_; ++i) {
+  for (int i = 0; i < limits.joints(); ++i) {
     longest = std::max({longest, limits.acceleration[i] / limits.jerk[i],
                         std::sqrt(limits.velocity[i] / limits.jerk[i])});
   }
@@ -125,7 +95,7 @@ void RateGovernor::improve(const RateState& now, double target,
       changing() ? plan_.step[static_cast<std::size_t>(plan_.position)].curvature : 0.0;
   const double missing = target - end;
 
-  Stretch stretch;
+  RateStretch stretch;
   const double furthest = now.tau + cycle_ * (now.rate + cycle_ * max_slope_);
   if (!lookahead.ranges(now.tau, furthest, stretch.path)) return;
   const Range allowed{std::max(-max_curvature_, (-max_slope_ - now.slope) / cycle_),
@@ -138,7 +108,7 @@ void RateGovernor::improve(const RateState& now, double target,
     Range curvature = allowed;
     stretch.slope = {now.slope, now.slope};
     stretch.rate = hull(now.rate, std::clamp(now.after(cycle_, push).rate, 0.0, 1.0));
-    if (!room(stretch, cycle_, curvature)) return;
+    if (!limits_.room(stretch, cycle_, curvature)) return;
     push = std::clamp(wanted, curvature.low, curvature.high);
   }
 
@@ -163,9 +133,9 @@ bool RateGovernor::prove(RateState state, double push, const Lookahead& lookahea
   plan.steps = 0;
   plan.position = 0;
   RateState next = state.after(cycle_, push);
-  Stretch stretch;
-  if (next.tau < state.tau || !stretch.take(state, next, push)) return false;
-  if (!lookahead.ranges(state.tau, next.tau, stretch.path) || !within_limits(stretch)) {
+  RateStretch stretch;
+  if (next.tau < state.tau || !take(stretch, state, next, push)) return false;
+  if (!lookahead.ranges(state.tau, next.tau, stretch.path) || !limits_.kept(stretch)) {
     return false;
   }
   if (std::abs(next.slope) < kSameRate) next.slope = 0.0;
@@ -181,7 +151,7 @@ bool RateGovernor::prove(RateState state, double push, const Lookahead& lookahea
 bool RateGovernor::step_back(RateState& state, const Lookahead& lookahead,
                              Plan& plan) const noexcept VIAPOINT_NONBLOCKING {
   const double longest = stride_ * cycle_;
-  Stretch stretch;
+  RateStretch stretch;
   const double furthest =
       state.tau + longest * (state.rate + 0.5 * longest * std::max(0.0, state.slope));
   if (!lookahead.ranges(state.tau, furthest, stretch.path)) return false;
@@ -193,7 +163,7 @@ bool RateGovernor::step_back(RateState& state, const Lookahead& lookahead,
     stretch.slope = {state.slope, state.slope};
     stretch.rate = {state.rate, std::min(1.0, state.rate + time * std::max(0.0, state.slope))};
     Range curvature{-max_curvature_, max_curvature_};
-    if (!room(stretch, time, curvature)) return false;
+    if (!limits_.room(stretch, time, curvature)) return false;
     gamma = std::clamp(wanted, curvature.low, curvature.high);
     return true;
   };
@@ -211,7 +181,7 @@ int RateGovernor::cycles_back(double slope, double gamma) const noexcept VIAPOIN
   return std::max(1, static_cast<int>(std::min(cycles, static_cast<double>(stride_))));
 }
 
-bool RateGovernor::try_step(RateState& state, double gamma, double furthest, Stretch& stretch,
+bool RateGovernor::try_step(RateState& state, double gamma, double furthest, RateStretch& stretch,
                             Plan& plan) const noexcept VIAPOINT_NONBLOCKING {
   const int cycles = cycles_back(state.slope, gamma);
   const double undone = -state.slope / cycle_;
@@ -220,69 +190,12 @@ bool RateGovernor::try_step(RateState& state, double gamma, double furthest, Str
   if (lands) gamma = undone;
   RateState next = state.after(cycles * cycle_, gamma);
   if (lands) next.slope = 0.0;
-  const bool possible = stretch.take(state, next, gamma);
+  const bool possible = take(stretch, state, next, gamma);
   if (!possible || next.tau > furthest || std::abs(next.slope) > max_slope_) return false;
-  if (!within_limits(stretch)) return false;
+  if (!limits_.kept(stretch)) return false;
   plan.step[static_cast<std::size_t>(plan.steps++)] = {gamma, cycles};
   state = next;
   return true;
-}
-
-bool RateGovernor::within_limits(const Stretch& stretch) const noexcept VIAPOINT_NONBLOCKING {
-  const Range& rate = stretch.rate;
-  const Range square{rate.low * rate.low, rate.high * rate.high};
-  const Range cube{square.low * rate.low, square.high * rate.high};
-  const Range mixed = product(rate, {3.0 * stretch.slope.low, 3.0 * stretch.slope.high});
-  const Range gamma{stretch.curvature, stretch.curvature};
-  for (int j = 0; j < joints_; ++j) {
-    const auto i = static_cast<std::size_t>(j);
-    const DerivativeRanges& path = stretch.path;
-    const Range drift = product(path.second[i], square);
-    const Range push = product(path.first[i], stretch.slope);
-    const double acceleration = limits_.acceleration[j] * (1.0 + kRounding);
-    if (drift.high + push.high > acceleration || drift.low + push.low < -acceleration) return false;
-    const Range nominal = product(path.third[i], cube);
-    const Range turn = product(path.second[i], mixed);
-    const Range bend = product(path.first[i], gamma);
-    const double jerk = limits_.jerk[j] * (1.0 + kRounding);
-    if (nominal.high + turn.high + bend.high > jerk) return false;
-    if (nominal.low + turn.low + bend.low < -jerk) return false;
-  }
-  return true;
-}
-
-bool RateGovernor::room(const Stretch& stretch, double time,
-                        Range& curvature) const noexcept VIAPOINT_NONBLOCKING {
-  const Range& rate = stretch.rate;
-  const Range square{rate.low * rate.low, rate.high * rate.high};
-  const Range cube{square.low * rate.low, square.high * rate.high};
-  for (int j = 0; j < joints_; ++j) {
-    const auto i = static_cast<std::size_t>(j);
-    // q̈ = q''ρ² + q'(α + γt) and
-    // q⃛ = q'''ρ³ + 3q''ρ(α + γt) + q'γ are linear in γ; their worst is at the start or the end.
-    const Range nominal = product(stretch.path.third[i], cube);
-    const Range mixed = product(stretch.path.second[i], {3.0 * rate.low, 3.0 * rate.high});
-    const Range turn = product(mixed, stretch.slope);
-    const Range& start = stretch.path.first[i];
-    const Range end{start.low + time * mixed.low, start.high + time * mixed.high};
-    // Half the slack, so that the strongest push passes within_limits() in spite of rounding.
-    const double jerk = limits_.jerk[j] * (1.0 + 0.5 * kRounding);
-    const Range drift = product(stretch.path.second[i], square);
-    const Range push = product(start, stretch.slope);
-    const double acceleration = limits_.acceleration[j] * (1.0 + 0.5 * kRounding);
-    const Range gain{time * start.low, time * start.high};
-    if (!narrow(curvature, gain, acceleration - drift.high - push.high)) return false;
-    if (!narrow(curvature, {-gain.high, -gain.low}, acceleration + drift.low + push.low)) {
-      return false;
-    }
-    for (const Range& factor : {start, end}) {
-      if (!narrow(curvature, factor, jerk - nominal.high - turn.high)) return false;
-      if (!narrow(curvature, {-factor.high, -factor.low}, jerk + nominal.low + turn.low)) {
-        return false;
-      }
-    }
-  }
-  return curvature.low <= curvature.high;
 }
 
 }  // namespace viapoint

@@ -2,6 +2,7 @@
 /// What the path will ask of each joint in the nominal time to come, as ranges.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -19,10 +20,44 @@ struct Range {
   double high = 0.0;
 };
 
+/// The same for two joints at once: as many as every processor has lanes for.
+struct PairRange {
+  Eigen::Array2d low = {0.0, 0.0};
+  Eigen::Array2d high = {0.0, 0.0};
+
+  /// Widens to hold `other` too.
+  void include(const PairRange& other) noexcept {
+    low = low.min(other.low);
+    high = high.max(other.high);
+  }
+};
+
+/// The same for every joint; of an odd number the last pair's second is 0.
+struct JointRanges {
+  std::array<PairRange, kMaxJoints / 2> pair;
+
+  [[nodiscard]] double low(int joint) const noexcept { return of(joint).low[joint % 2]; }
+  [[nodiscard]] double high(int joint) const noexcept { return of(joint).high[joint % 2]; }
+  void set(int joint, const Range& range) noexcept {
+    PairRange& both = pair[static_cast<std::size_t>(joint / 2)];
+    both.low[joint % 2] = range.low;
+    both.high[joint % 2] = range.high;
+  }
+  /// Widens a joint's range to hold `range` too.
+  void include(int joint, const Range& range) noexcept {
+    set(joint, {std::min(low(joint), range.low), std::max(high(joint), range.high)});
+  }
+
+ private:
+  [[nodiscard]] const PairRange& of(int joint) const noexcept {
+    return pair[static_cast<std::size_t>(joint / 2)];
+  }
+};
+
 /// Ranges of dq/dτ, d²q/dτ², d³q/dτ³ of every joint over a stretch of nominal time τ
 /// [rad or m per s, s², s³].
 struct DerivativeRanges {
-  std::array<Range, kMaxJoints> first, second, third;
+  JointRanges first, second, third;
 };
 
 /// A window of cells, equally wide in nominal time, that slides along a trajectory. Each cell holds
@@ -63,6 +98,7 @@ class Lookahead {
   void add_rest(DerivativeRanges& cell) const noexcept VIAPOINT_NONBLOCKING;
 
   int joints_;
+  std::size_t pairs_;
   JointLimits limits_;
   double width_;
   const Trajectory* trajectory_ = nullptr;

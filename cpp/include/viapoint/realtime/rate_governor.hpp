@@ -24,6 +24,7 @@
 #include "viapoint/core/joint_limits.hpp"
 #include "viapoint/core/nonblocking.hpp"
 #include "viapoint/realtime/lookahead.hpp"
+#include "viapoint/realtime/rate_limits.hpp"
 
 namespace viapoint {
 
@@ -73,7 +74,6 @@ class RateGovernor {
     int position = 0;       ///< step under way
     double end_rate = 1.0;  ///< rate where the slope is back at 0
   };
-  struct Stretch;
 
   void improve(const RateState& now, double target,
                const Lookahead& lookahead) noexcept VIAPOINT_NONBLOCKING;
@@ -81,15 +81,11 @@ class RateGovernor {
                            Plan& plan) const noexcept VIAPOINT_NONBLOCKING;
   [[nodiscard]] bool step_back(RateState& state, const Lookahead& lookahead,
                                Plan& plan) const noexcept VIAPOINT_NONBLOCKING;
-  [[nodiscard]] bool try_step(RateState& state, double gamma, double furthest, Stretch& stretch,
+  [[nodiscard]] bool try_step(RateState& state, double gamma, double furthest, RateStretch& stretch,
                               Plan& plan) const noexcept VIAPOINT_NONBLOCKING;
-  [[nodiscard]] bool within_limits(const Stretch& stretch) const noexcept VIAPOINT_NONBLOCKING;
-  [[nodiscard]] bool room(const Stretch& stretch, double time,
-                          Range& curvature) const noexcept VIAPOINT_NONBLOCKING;
   [[nodiscard]] int cycles_back(double slope, double gamma) const noexcept VIAPOINT_NONBLOCKING;
 
-  int joints_;
-  JointLimits limits_;
+  RateLimits limits_;
   double cycle_;
   int stride_;        ///< cycles in a step of the way back
   double max_slope_;  ///< |α| where the joints would allow more [1/s]

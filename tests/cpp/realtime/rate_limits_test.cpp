@@ -1,0 +1,177 @@
+#include "viapoint/realtime/rate_limits.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "realtime/random_motion.hpp"
+
+namespace viapoint {
+namespace {
+
+constexpr unsigned kStretches = 5000;
+
+/// Path derivatives, rate and change of rate of one joint at one moment.
+struct Moment {
+  double first, second, third, rate, slope, curvature;
+
+  [[nodiscard]] double acceleration() const { return second * rate * rate + first * slope; }
+  [[nodiscard]] double jerk() const {
+    return third * rate * rate * rate + 3.0 * second * rate * slope + first * curvature;
+  }
+};
+
+class Problem {
+ public:
+  /// @param width of the ranges, 0 for single values
+  Problem(unsigned seed, double width) : random_(seed), width_(width) {
+    joints = std::uniform_int_distribution<int>(1, 7)(random_);
+    limits = even_limits(joints, 2.0, 20.0, 200.0);
+    for (int j = 0; j < joints; ++j) {
+      limits.acceleration[j] *= uniform(0.2, 5.0);
+      limits.jerk[j] *= uniform(0.2, 5.0);
+      stretch.path.first.set(j, range(limits.velocity[j]));
+      stretch.path.second.set(j, range(limits.acceleration[j]));
+      stretch.path.third.set(j, range(limits.jerk[j]));
+    }
+    stretch.rate.low = uniform(0.0, 1.0 - width);
+    stretch.rate.high = stretch.rate.low + width * uniform(0.0, 1.0);
+    stretch.slope = range(4.0);
+    stretch.curvature = uniform(-80.0, 80.0);
+  }
+
+  [[nodiscard]] double uniform(double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random_);
+  }
+  [[nodiscard]] double in(double low, double high) {  // the ends too: there is the worst
+    const int where = std::uniform_int_distribution<int>(0, 3)(random_);
+    return where == 0 ? low : where == 1 ? high : low + uniform(0.0, 1.0) * (high - low);
+  }
+  [[nodiscard]] Moment moment(int j) {
+    const auto& [first, second, third] = stretch.path;
+    return {in(first.low(j), first.high(j)),           in(second.low(j), second.high(j)),
+            in(third.low(j), third.high(j)),           in(stretch.rate.low, stretch.rate.high),
+            in(stretch.slope.low, stretch.slope.high), stretch.curvature};
+  }
+  [[nodiscard]] double share(int j, const Moment& moment) const {
+    return std::max(std::abs(moment.acceleration()) / limits.acceleration[j],
+                    std::abs(moment.jerk()) / limits.jerk[j]);
+  }
+
+  JointLimits limits;
+  RateStretch stretch;
+  int joints;
+
+ private:
+  Range range(double largest) {
+    const double low = uniform(-largest, largest);
+    return {low, std::min(largest, low + width_ * uniform(0.0, largest))};
+  }
+
+  std::mt19937 random_;
+  double width_;
+};
+
+TEST(RateLimits, WhatIsKeptForRangesIsKeptForEveryMoment) {
+  int kept = 0, refused = 0;
+  for (unsigned seed = 0; seed < kStretches; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    Problem problem(seed, 0.2);
+    if (!RateLimits(problem.limits).kept(problem.stretch)) {
+      ++refused;
+      continue;
+    }
+    ++kept;
+    for (int j = 0; j < problem.joints; ++j) {
+      for (int s = 0; s < 50; ++s) {
+        ASSERT_LE(problem.share(j, problem.moment(j)), 1.0 + 2e-9) << "joint " << j;
+      }
+    }
+  }
+  EXPECT_GT(kept, 200);
+  EXPECT_GT(refused, 200);
+}
+
+TEST(RateLimits, OfSingleValuesItRefusesOnlyWhatBreaksALimit) {
+  int kept = 0, refused = 0;
+  for (unsigned seed = 0; seed < kStretches; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    Problem problem(seed, 0.0);
+    double worst = 0.0;
+    for (int j = 0; j < problem.joints; ++j) {
+      worst = std::max(worst, problem.share(j, problem.moment(j)));
+    }
+    const bool answer = RateLimits(problem.limits).kept(problem.stretch);
+    ++(answer ? kept : refused);
+    ASSERT_EQ(answer, worst <= 1.0 + 1e-9) << worst;
+  }
+  EXPECT_GT(kept, 200);
+  EXPECT_GT(refused, 200);
+}
+
+/// The largest share over all joints at the start and, a `time` later, at the end of a push.
+double worst_of_push(Problem& problem, double time, double curvature) {
+  double worst = 0.0;
+  for (int j = 0; j < problem.joints; ++j) {
+    Moment moment = problem.moment(j);
+    moment.slope = problem.stretch.slope.low;
+    moment.curvature = curvature;
+    worst = std::max(worst, std::abs(moment.jerk()) / problem.limits.jerk[j]);
+    moment.slope += time * curvature;
+    worst = std::max(worst, problem.share(j, moment));
+  }
+  return worst;
+}
+
+TEST(RateLimits, AnyPushWithinTheRoomKeepsTheLimits) {
+  int found = 0;
+  for (unsigned seed = 0; seed < kStretches; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    Problem problem(seed, 0.1);
+    const double time = problem.uniform(0.002, 0.02);
+    Range room{-1e4, 1e4};
+    if (!RateLimits(problem.limits).room(problem.stretch, time, room)) continue;
+    ++found;
+    for (int s = 0; s < 50; ++s) {
+      const double push = problem.in(room.low, room.high);
+      ASSERT_LE(worst_of_push(problem, time, push), 1.0 + 2e-9) << "push " << push;
+    }
+  }
+  EXPECT_GT(found, 200);
+}
+
+TEST(RateLimits, OfSingleValuesTheRoomEndsWhereALimitIsReached) {
+  int found = 0, forced = 0;
+  for (unsigned seed = 0; seed < kStretches; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    Problem problem(seed, 0.0);
+    const double time = problem.uniform(0.002, 0.02);
+    constexpr double kMost = 1e4;
+    Range room{-kMost, kMost};
+    if (!RateLimits(problem.limits).room(problem.stretch, time, room)) continue;
+    ++found;
+    if (room.low > 0.0 || room.high < 0.0) ++forced;
+    for (const double end : {room.low, room.high}) {
+      if (std::abs(end) == kMost) continue;
+      ASSERT_NEAR(worst_of_push(problem, time, end), 1.0, 1e-6);
+    }
+  }
+  EXPECT_GT(found, 200);
+  EXPECT_GT(forced, 50) << "where the joints leave no choice but to push";
+}
+
+TEST(RateLimits, LeaveAJointThatDoesNotMoveOutOfAccount) {
+  const RateLimits limits(even_limits(3, 2.0, 20.0, 200.0));
+  RateStretch stretch;
+  stretch.path.first.set(1, {1.0, 1.0});
+  stretch.rate = {0.5, 0.5};
+  Range room{-1e6, 1e6};
+  ASSERT_TRUE(limits.room(stretch, 0.01, room));
+  EXPECT_NEAR(room.high, 200.0, 1e-6);
+  EXPECT_NEAR(room.low, -200.0, 1e-6);
+}
+
+}  // namespace
+}  // namespace viapoint
