@@ -87,8 +87,8 @@ MoveStatus MoveProblem::solve_between_walls(const AxisState& start, const AxisLi
   const MoveStatus status = search.admit();
   if (status != MoveStatus::kSolved) return status;
   between_.value.walls = search.walls();
-  between_.value.route = search.quickest();
   between_.value.calm = search.calm();
+  between_.value.route = search.quickest(between_.value.calm.duration);
   between_.value.has_calm = true;
   if (!(between_.value.route.duration <= between_.value.calm.duration))
     between_.value.route = between_.value.calm;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "profile/mirror_images.hpp"
 #include "profile/touch.hpp"
@@ -20,16 +21,10 @@ constexpr int kMostTouches = 4;
 
 }  // namespace
 
-double RouteSearch::leg(const AxisState& from, const AxisState& to,
-                        AxisMove::Extent* extent) const noexcept {
+RouteSearch::Leg RouteSearch::leg(const AxisState& from, const AxisState& to) const noexcept {
   AxisMove move;
-  AxisLimits limits = limits_;
-  limits.position_min = -kNever;
-  limits.position_max = kNever;
-  if (quickest_move(from, to, limits, move) != MoveStatus::kSolved) return kNever;
-  if (walls_.hold(move)) return move.total;
-  if (extent != nullptr) *extent = move.extent();
-  return kNever;
+  if (quickest_move(from, to, limits_, move) != MoveStatus::kSolved) return {kNever, false};
+  return {move.total, walls_.hold(move)};
 }
 
 MoveStatus RouteSearch::admit_high(Walls& walls, const AxisState& from, const AxisState& to,
@@ -59,64 +54,63 @@ MoveStatus RouteSearch::admit(Walls& walls, const AxisState& from,
   return status;
 }
 
-Route RouteSearch::quickest() const noexcept {
-  const Touches touches = search(from_, to_, 2);
+Route RouteSearch::quickest(double budget) const noexcept {
+  const Touches touches = search(from_, to_, 2, budget, false);
   Route route{};
   route.rest = -1;
   route.stops = touches.count;
   for (int i = 0; i < touches.count; ++i) {
     route.stop[static_cast<size_t>(i)] = touches.at[static_cast<size_t>(i)];
   }
-  route.duration = touches.duration;
+  route.duration = touches.count > 0 ? touches.duration : kNever;
   return route;
 }
 
+/// Walls only make a leg longer: what takes too long without them need not be looked into.
 RouteSearch::Touches RouteSearch::through(const AxisState& from, const AxisState& touch,
-                                          const AxisState& to, int most) const noexcept {
-  Touches all{{touch}, 1, kNever};
-  AxisMove::Extent ignored{};
-  const double first = leg(from, touch, &ignored), second = leg(touch, to, &ignored);
-  all.duration = first + second;
-  if (most < 2 || std::isfinite(all.duration)) return all;
-  if (std::isfinite(first)) {
-    const Touches more = search(touch, to, 1, true);
-    all = {{touch, more.at[0]}, 2, first + more.duration};
-  } else if (std::isfinite(second)) {
-    const Touches more = search(from, touch, 1, true);
-    all = {{more.at[0], touch}, 2, more.duration + second};
-  }
-  return all;
+                                          const AxisState& to, int most, double budget,
+                                          double& bound) const noexcept {
+  const Touches none{{}, 0, kNever};
+  const Leg first = leg(from, touch);
+  if (!(first.duration < budget)) return none;
+  const Leg second = leg(touch, to);
+  const double total = first.duration + second.duration;
+  if (first.holds && second.holds) return {{touch}, 1, total};
+  if (!(total < budget) || first.holds == second.holds) return none;
+  bound = std::min(bound, total);
+  if (most < 2) return none;
+  const Touches more = first.holds ? search(touch, to, 1, budget - first.duration, true)
+                                   : search(from, touch, 1, budget - second.duration, true);
+  if (more.count == 0) return none;
+  if (first.holds) return {{touch, more.at[0]}, 2, first.duration + more.duration};
+  return {{more.at[0], touch}, 2, more.duration + second.duration};
 }
 
 RouteSearch::Touches RouteSearch::search(const AxisState& from, const AxisState& to, int most,
-                                         bool nested) const noexcept {
+                                         double budget, bool nested) const noexcept {
   const int samples = nested ? kNestedSamples : kSamples;
   const int steps = nested ? kNestedSteps : kSteps;
-  Touches best{{}, 0, kNever};
+  Touches best{{}, 0, budget};
   Walls walls = walls_;
   if (admit(walls, from, to) != MoveStatus::kSolved) return best;
   AxisMove free;
   if (quickest_move(from, to, limits_, free) != MoveStatus::kSolved) return best;
   const AxisMove::Extent extent = free.extent();
+  struct Range {
+    bool upper;
+    double hardest, gentlest, bound;
+  };
+  std::array<Range, 4> ranges;
+  size_t count = 0;
   for (const bool upper : {true, false}) {
     const bool is_left = upper ? extent.high > walls_.high : extent.low < walls_.low;
     if (!is_left) continue;
-    const double sign = upper ? 1.0 : -1.0;
     const AxisLimits limits = upper ? limits_ : mirrored(limits_);
     const AxisState start = upper ? from : mirrored(from);
     const AxisState end = reversed(upper ? to : mirrored(to));
     const double wall = upper ? walls_.high : -walls_.low;
-
-    const auto try_range = [&](double hardest, double gentlest) {
-      if (!(hardest <= gentlest)) return;
-      Touches found{{}, 0, kNever};
-      (void)least_of(hardest, gentlest, samples, steps, [&](double acceleration) {
-        const AxisState touch{sign * wall, 0.0, sign * acceleration, 0.0};
-        const Touches now = through(from, touch, to, most);
-        if (now.duration < found.duration) found = now;
-        return now.duration;
-      });
-      if (found.duration < best.duration) best = found;
+    const auto add = [&](double hardest, double gentlest) {
+      if (hardest <= gentlest) ranges[count++] = {upper, hardest, gentlest, -kNever};
     };
     TouchRange coming{hardest_touch(limits), 0.0, false, true}, going = coming;
     const bool comes = start.q <= wall && approaches(start, limits);
@@ -126,10 +120,25 @@ RouteSearch::Touches RouteSearch::search(const AxisState& from, const AxisState&
     const double hardest = std::max(coming.hardest, going.hardest);
     const double gentlest = std::min(coming.gentlest, going.gentlest);
     if (hardest <= gentlest) {
-      try_range(hardest, gentlest);
+      add(hardest, gentlest);
     } else {
-      try_range(coming.hardest, coming.gentlest);
-      try_range(going.hardest, going.gentlest);
+      add(coming.hardest, coming.gentlest);
+      add(going.hardest, going.gentlest);
+    }
+  }
+  // First with one touch alone, then with another where that may still be quicker.
+  for (int touches = 1; touches <= most; ++touches) {
+    for (Range& range : std::span(ranges).first(count)) {
+      if (!(range.bound < best.duration)) continue;
+      range.bound = kNever;
+      const double sign = range.upper ? 1.0 : -1.0;
+      const double wall = range.upper ? walls_.high : walls_.low;
+      (void)least_of(range.hardest, range.gentlest, samples, steps, [&](double acceleration) {
+        const AxisState touch{wall, 0.0, sign * acceleration, 0.0};
+        const Touches now = through(from, touch, to, touches, best.duration, range.bound);
+        if (now.count > 0 && now.duration < best.duration) best = now;
+        return now.count == touches ? now.duration : kNever;
+      });
     }
   }
   return best;
@@ -177,7 +186,8 @@ Route RouteSearch::calm() const noexcept {
   AxisState here = from_;
   for (int i = 0; i <= route.stops; ++i) {
     const AxisState& next = i < route.stops ? route.stop[static_cast<size_t>(i)] : to_;
-    duration += leg(here, next);
+    const Leg way = leg(here, next);
+    duration += way.holds ? way.duration : kNever;
     here = next;
   }
   route.duration = duration;

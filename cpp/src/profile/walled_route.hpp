@@ -35,28 +35,33 @@ class RouteSearch {
   /// start or an end beyond what can be braked for, moves the walls by as much.
   [[nodiscard]] MoveStatus admit() noexcept { return admit(walls_, from_, to_); }
   [[nodiscard]] const Walls& walls() const noexcept { return walls_; }
-  /// The quickest that touches the walls once or twice.
-  [[nodiscard]] Route quickest() const noexcept;
+  /// The quickest that touches the walls once or twice and takes less than `budget`.
+  [[nodiscard]] Route quickest(double budget) const noexcept;
   /// One that comes to rest where it first can, and starts anew.
   [[nodiscard]] Route calm() const noexcept;
 
  private:
   struct Touches {
     std::array<AxisState, 2> at;
-    int count;
+    int count;  ///< 0 where there is no such way
     double duration;
+  };
+  /// The quickest motion without walls.
+  struct Leg {
+    double duration;
+    bool holds;  ///< stays between the walls
   };
 
   [[nodiscard]] MoveStatus admit(Walls& walls, const AxisState& from,
                                  const AxisState& to) const noexcept;
   [[nodiscard]] MoveStatus admit_high(Walls& walls, const AxisState& from, const AxisState& to,
                                       const AxisLimits& limits) const noexcept;
-  [[nodiscard]] double leg(const AxisState& from, const AxisState& to,
-                           AxisMove::Extent* extent = nullptr) const noexcept;
-  [[nodiscard]] Touches search(const AxisState& from, const AxisState& to, int most,
-                               bool nested = false) const noexcept;
+  [[nodiscard]] Leg leg(const AxisState& from, const AxisState& to) const noexcept;
+  [[nodiscard]] Touches search(const AxisState& from, const AxisState& to, int most, double budget,
+                               bool nested) const noexcept;
+  /// @param bound lowered to what a way with another touch takes at least
   [[nodiscard]] Touches through(const AxisState& from, const AxisState& touch, const AxisState& to,
-                                int most) const noexcept;
+                                int most, double budget, double& bound) const noexcept;
   [[nodiscard]] static int come_to_rest(AxisState from, const AxisLimits& limits,
                                         const Walls& walls, AxisState* stop) noexcept;
 

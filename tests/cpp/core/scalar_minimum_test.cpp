@@ -58,6 +58,22 @@ TEST(ScalarMinimum, LooksBesidePlacesWithoutAValue) {
   EXPECT_EQ(least_of(0.0, 1.0, 9, 60, [](double) { return kNever; }).value, kNever);
 }
 
+TEST(ScalarMinimum, TakesAnEndFromWhichTheFunctionRisesAsItIs) {
+  for (const double slope : {-2.0, 2.0}) {
+    int calls = 0;
+    const auto ramp = [&](double x) {
+      ++calls;
+      return slope * x;
+    };
+    const ScalarMinimum least = least_of(-1.0, 3.0, 9, 60, ramp);
+    EXPECT_EQ(least.x, slope > 0.0 ? -1.0 : 3.0);
+    EXPECT_LE(calls, 10);
+  }
+  // But one that falls to just beside the end is followed there.
+  const auto near_end = [](double x) { return std::abs(x - 1e-3); };
+  EXPECT_NEAR(least_of(0.0, 1.0, 9, 60, near_end).x, 1e-3, 1e-6);
+}
+
 TEST(ScalarMinimum, TakesAnIntervalOfNoLengthAsItIs) {
   const ScalarMinimum least = least_of(2.0, 2.0, 9, 60, [](double x) { return x; });
   EXPECT_EQ(least.x, 2.0);

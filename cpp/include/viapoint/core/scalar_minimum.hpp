@@ -67,8 +67,9 @@ ScalarMinimum refined_minimum(double left, double right, ScalarMinimum best, dou
   return best;
 }
 
-/// Looks at `samples` places, denser toward both ends, and refines around the least.
-/// @param f not NaN; called at most `samples` + `steps` times. @pre samples >= 3
+/// Looks at `samples` places, denser toward both ends, and refines around the least. Where that is
+/// an end and the function rises from there, it is taken as it is.
+/// @param f not NaN; called at most `samples` + `steps` + 1 times. @pre samples >= 3
 template <typename Function>
 ScalarMinimum least_of(double low, double high, int samples, int steps, Function f) {
   constexpr double kResolution = 1e-7;
@@ -88,7 +89,10 @@ ScalarMinimum least_of(double low, double high, int samples, int steps, Function
     if (!(high > low)) return best;
   }
   if (!std::isfinite(best.value)) return best;
-  return refined_minimum(place(at - 1), place(at + 1), best, kResolution * (high - low), steps, f);
+  const double resolution = kResolution * (high - low);
+  if (at == 0 && f(low + resolution) >= best.value) return best;
+  if (at + 1 == samples && f(high - resolution) >= best.value) return best;
+  return refined_minimum(place(at - 1), place(at + 1), best, resolution, steps, f);
 }
 
 }  // namespace viapoint
