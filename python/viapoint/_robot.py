@@ -192,7 +192,7 @@ def load_robot(name_or_path: str | os.PathLike[str], *, tip: str | None = None) 
         A built-in name (``"puma560"``; the command ``viapoint robots`` lists them), or a file that
         ends in ``.yaml`` or ``.urdf``.
     tip : str, optional
-        The link of a URDF that carries the tool. Default: its only leaf.
+        The link of a URDF that carries the tool. Default: its only leaf that moves.
 
     Raises
     ------

@@ -83,11 +83,25 @@ Pose to_pose(const urdf::Pose& pose) {
   return out;
 }
 
+/// About or along one axis.
+bool moves(const urdf::Joint& joint) {
+  return joint.type == urdf::Joint::REVOLUTE || joint.type == urdf::Joint::CONTINUOUS ||
+         joint.type == urdf::Joint::PRISMATIC;
+}
+
+/// False for a link that is fixed to the root, such as the second name that many files give it.
+bool is_moved(const urdf::ModelInterface& model, urdf::LinkConstSharedPtr link) {
+  for (; link->parent_joint; link = model.getLink(link->parent_joint->parent_link_name)) {
+    if (moves(*link->parent_joint)) return true;
+  }
+  return false;
+}
+
 urdf::LinkConstSharedPtr find_tip(const urdf::ModelInterface& model, const std::string& source,
                                   const std::string& tip) {
   std::vector<std::string> leaves;
   for (const auto& [name, link] : model.links_) {
-    if (link->child_joints.empty()) leaves.push_back(name);
+    if (link->child_joints.empty() && is_moved(model, link)) leaves.push_back(name);
   }
   std::string list;
   for (const std::string& name : leaves) list += (list.empty() ? "" : ", ") + name;
@@ -96,17 +110,12 @@ urdf::LinkConstSharedPtr find_tip(const urdf::ModelInterface& model, const std::
     if (!link) refuse(source, "no link is called \"" + tip + "\"", {"the leaf links are: " + list});
     return link;
   }
+  if (leaves.empty()) refuse(source, "no moving joint between the root link and any leaf");
   if (leaves.size() != 1) {
     refuse(source, "the robot branches: it has " + std::to_string(leaves.size()) + " leaf links",
            {"name the tip, one of: " + list});
   }
   return model.getLink(leaves.front());
-}
-
-/// About or along one axis.
-bool moves(const urdf::Joint& joint) {
-  return joint.type == urdf::Joint::REVOLUTE || joint.type == urdf::Joint::CONTINUOUS ||
-         joint.type == urdf::Joint::PRISMATIC;
 }
 
 bool has_velocity(const urdf::Joint& joint) {

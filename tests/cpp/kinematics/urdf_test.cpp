@@ -93,6 +93,15 @@ TEST(UrdfDescription, StopsAtTheNamedTip) {
   EXPECT_TRUE(says(problem_of(kGood, "hand"), "no link is called \"hand\""));
 }
 
+TEST(UrdfDescription, PassesOverALeafThatIsFixedToTheRoot) {
+  const std::string second_name =
+      "<link name=\"base_too\"/><joint name=\"same\" type=\"fixed\"><parent link=\"base\"/>"
+      "<child link=\"base_too\"/></joint></robot>";
+  const RobotPtr robot =
+      RobotModel::make(description_from_urdf(with(kGood, "</robot>", second_name), "trio.urdf"));
+  EXPECT_EQ(robot->joints(), 3);
+}
+
 TEST(UrdfDescription, RefusesToGuessABranch) {
   const std::string forked = with(kGood, "</robot>", R"(<link name="camera"/>
     <joint name="eye" type="fixed"><parent link="fore"/><child link="camera"/></joint></robot>)");

@@ -30,7 +30,7 @@ struct RobotDescription {
 /// descriptions are searched in $VIAPOINT_ROBOTS, in the directory of set_robot_directory(), in
 /// share/viapoint/robots beside the bin/ of the running executable, and in the source tree, in that
 /// order. Real-time: not. Threads: any.
-/// @param tip link of a URDF that carries the tool; the only leaf when empty
+/// @param tip link of a URDF that carries the tool; the only leaf that moves when empty
 /// @throws MotionError(kBadRobot) with file, line or key, and what was expected; kBadLimits for
 /// limits that are missing, zero or swapped; kFile
 [[nodiscard]] RobotDescription load_description(const std::string& name_or_path,
@@ -48,8 +48,8 @@ void set_robot_directory(const std::filesystem::path& directory);
 /// @throws MotionError(kBadRobot, kBadLimits) with line and key
 [[nodiscard]] RobotDescription description_from_yaml(const std::string& text,
                                                      const std::string& source);
-/// URDF text: the chain from the root link to `tip` (the only leaf when empty). URDF has no
-/// acceleration and jerk limits: they are chosen as 10 v and 100 v, and marked as chosen.
+/// URDF text: the chain from the root link to `tip` (the only leaf that moves when empty). URDF
+/// has no acceleration and jerk limits: they are chosen as 10 v and 100 v, and marked as chosen.
 /// @throws MotionError(kBadRobot, kBadLimits) naming the joint or link
 [[nodiscard]] RobotDescription description_from_urdf(const std::string& text,
                                                      const std::string& source,
