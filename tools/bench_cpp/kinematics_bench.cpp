@@ -1,5 +1,8 @@
+#include <time.h>
+
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <random>
 #include <string>
 
@@ -7,6 +10,7 @@
 #include "durations.hpp"
 #include "json_line.hpp"
 #include "kinematics/closed_form.hpp"
+#include "kinematics/numerical_inverse.hpp"
 #include "viapoint/core/error.hpp"
 #include "viapoint/kinematics/inverse_kinematics.hpp"
 #include "viapoint/kinematics/robot_model.hpp"
@@ -14,10 +18,25 @@
 namespace viapoint::bench {
 namespace {
 
-/// What reading the clock twice takes [s], which no figure here counts.
-double clock_cost() {
+/// Runs `action` and returns the processor time it took [s]: other programs on the machine do not
+/// count. Reading this clock takes a call of the system, so what is quick is timed by time_of().
+template <typename Action>
+double processor_time_of(Action&& action) {
+  const auto read = [] {
+    timespec now{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+  };
+  const double begin = read();
+  action();
+  return read() - begin;
+}
+
+/// What reading the clock takes [s], which no figure here counts. @param timer one of the two
+template <typename Timer>
+double clock_cost(Timer&& timer) {
   Durations reads;
-  for (int i = 0; i < 10'000; ++i) reads.add(time_of([] {}));
+  for (int i = 0; i < 10'000; ++i) reads.add(timer([] {}));
   return reads.quantile(0.5);
 }
 
@@ -42,7 +61,7 @@ double miss(const RobotModel& robot, const JointVector& q, const Pose& pose) {
 void form_of(const std::string& name, const RobotModel& robot, int poses) {
   const auto form = recognise_closed_form(robot.forward());
   std::mt19937_64 generator(1);
-  const double own = clock_cost();
+  const double own = clock_cost([](auto&& action) { return time_of(action); });
   Durations durations;
   durations.reserve(static_cast<size_t>(poses));
   double count = 0.0;
@@ -65,7 +84,7 @@ void form_of(const std::string& name, const RobotModel& robot, int poses) {
 /// the pose are among them.
 void branches_of(const std::string& name, const RobotModel& robot, int poses) {
   std::mt19937_64 generator(1);
-  const double own = clock_cost();
+  const double own = clock_cost([](auto&& action) { return time_of(action); });
   Durations durations;
   durations.reserve(static_cast<size_t>(poses));
   int solved = 0;
@@ -99,9 +118,10 @@ void branches_of(const std::string& name, const RobotModel& robot, int poses) {
 }
 
 /// The nearest solution to random joints: far from them in general.
-void nearest_of(const std::string& name, const RobotModel& robot, int poses) {
+void nearest_of(const std::string& name, const RobotModel& robot, const InverseKinematics& inverse,
+                int poses) {
   std::mt19937_64 generator(2);
-  const double own = clock_cost();
+  const double own = clock_cost([](auto&& action) { return processor_time_of(action); });
   Durations durations;
   durations.reserve(static_cast<size_t>(poses));
   int unsolved = 0;
@@ -111,13 +131,38 @@ void nearest_of(const std::string& name, const RobotModel& robot, int poses) {
     const JointVector near = random_joints(robot.limits(), generator);
     try {
       JointVector q;
-      durations.add(time_of([&] { q = robot.inverse().solve_near(pose, near); }) - own);
+      durations.add(processor_time_of([&] { q = inverse.solve_near(pose, near); }) - own);
       worst = std::max(worst, miss(robot, q, pose));
     } catch (const MotionError&) {
       ++unsolved;
     }
   }
   JsonLine("kinematics", name + " nearest")
+      .add("poses", poses)
+      .add("unsolved", unsolved)
+      .add("worst_error", worst)
+      .add("p50_us", 1e6 * durations.quantile(0.5))
+      .add("p99_us", 1e6 * durations.quantile(0.99));
+}
+
+/// A solution within the limits from random joints, found without a closed form.
+void search_of(const std::string& name, const RobotModel& robot, const NumericalInverse& inverse,
+               int poses) {
+  std::mt19937_64 generator(2);
+  const double own = clock_cost([](auto&& action) { return processor_time_of(action); });
+  Durations durations;
+  durations.reserve(static_cast<size_t>(poses));
+  int unsolved = 0;
+  double worst = 0.0;
+  for (int i = 0; i < poses; ++i) {
+    const Pose pose = robot.forward().pose(random_joints(robot.limits(), generator));
+    const JointVector near = random_joints(robot.limits(), generator);
+    std::optional<JointVector> q;
+    durations.add(processor_time_of([&] { q = inverse.find(InverseTask(pose), near); }) - own);
+    if (q) worst = std::max(worst, miss(robot, *q, pose));
+    unsolved += q ? 0 : 1;
+  }
+  JsonLine("kinematics", name + " searched")
       .add("poses", poses)
       .add("unsolved", unsolved)
       .add("worst_error", worst)
@@ -132,18 +177,27 @@ void bench_kinematics(int poses) {
     const RobotPtr robot = RobotModel::make(load_description(name));
     if (robot->joints() == 6) form_of(name, *robot, poses);
     branches_of(name, *robot, poses);
-    nearest_of(name, *robot, poses);
+    nearest_of(name, *robot, robot->inverse(), poses);
   }
   constexpr int kSlower = 10;  // times slower, and so many fewer poses
   for (const std::string name : {"panda", "iiwa14"}) {
-    nearest_of(name, *RobotModel::make(load_description(name)), std::max(1, poses / kSlower));
+    const RobotPtr robot = RobotModel::make(load_description(name));
+    nearest_of(name, *robot, robot->inverse(), std::max(1, poses / kSlower));
   }
   for (const std::string name : {"puma560", "ur5e"}) {
     RobotDescription description = load_description(name);
     // Axis 3 as a calibration finds it: the UR then has no closed form.
     description.chain[2].before.linear() =
         description.chain[2].before.linear() * rotation_exp(Eigen::Vector3d(1e-4, 0.0, 0.0));
-    nearest_of(name + " out of true", *RobotModel::make(description), std::max(1, poses / kSlower));
+    const RobotPtr robot = RobotModel::make(description);
+    nearest_of(name + " out of true", *robot, robot->inverse(), std::max(1, poses / kSlower));
+  }
+  // Search alone, as for an arm that no closed form serves: any solution, and the nearest of some.
+  for (const std::string name : {"puma560", "ur5e", "panda", "iiwa14"}) {
+    const RobotPtr robot = RobotModel::make(load_description(name));
+    const NumericalInverse numerical(robot->forward(), robot->limits(), "as measured");
+    search_of(name, *robot, numerical, std::max(1, poses / kSlower));
+    nearest_of(name + " by search", *robot, numerical, std::max(1, poses / kSlower));
   }
 }
 

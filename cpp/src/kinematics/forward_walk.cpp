@@ -27,9 +27,9 @@ WalkedChain::WalkedChain(const ForwardKinematics& forward) : joints_(forward.joi
 Pose ForwardWalk::pose(const JointVector& q) {
   int from = 0;
   while (from < known_ && q[from] == last_[from]) ++from;
-  for (int i = from; i < chain_.joints_; ++i) {
+  for (int i = from; i < chain_.joints(); ++i) {
     const auto k = static_cast<size_t>(i);
-    const WalkedChain::Step& step = chain_.steps_[k];
+    const WalkedChain::Step& step = chain_.step(i);
     Eigen::Matrix3d& rotation = rotation_[k];
     Eigen::Vector3d& origin = origin_[k];
     if (i == 0) {
@@ -51,12 +51,12 @@ Pose ForwardWalk::pose(const JointVector& q) {
     rotation.col(1) = c * rotation.col(1) - s * x;
   }
   last_ = q;
-  known_ = chain_.joints_;
-  const auto end = static_cast<size_t>(chain_.joints_ - 1);
+  known_ = chain_.joints();
+  const auto end = static_cast<size_t>(chain_.joints() - 1);
   Pose out = Pose::Identity();
-  out.linear().noalias() = rotation_[end] * chain_.tool_rotation_;
+  out.linear().noalias() = rotation_[end] * chain_.tool_rotation();
   out.translation() = origin_[end];
-  out.translation().noalias() += rotation_[end] * chain_.tool_offset_;
+  out.translation().noalias() += rotation_[end] * chain_.tool_offset();
   return out;
 }
 

@@ -10,15 +10,19 @@ namespace viapoint {
 /// A chain as frames whose z axes are the joints', each seen from the one before.
 class WalkedChain {
  public:
-  explicit WalkedChain(const ForwardKinematics& forward);
-
- private:
-  friend class ForwardWalk;
   struct Step {
     JointType type = JointType::kRevolute;
     Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
     Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< [m]
   };
+  explicit WalkedChain(const ForwardKinematics& forward);
+
+  [[nodiscard]] int joints() const { return joints_; }
+  [[nodiscard]] const Step& step(int joint) const { return steps_[static_cast<size_t>(joint)]; }
+  [[nodiscard]] const Eigen::Matrix3d& tool_rotation() const { return tool_rotation_; }
+  [[nodiscard]] const Eigen::Vector3d& tool_offset() const { return tool_offset_; }
+
+ private:
   int joints_ = 0;
   std::array<Step, kMaxJoints> steps_;
   Eigen::Matrix3d tool_rotation_ = Eigen::Matrix3d::Identity();

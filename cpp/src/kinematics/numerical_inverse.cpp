@@ -1,6 +1,5 @@
 #include "kinematics/numerical_inverse.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -11,19 +10,13 @@
 namespace viapoint {
 namespace {
 
-constexpr int kIterations = 60;        ///< steps of one descent
-constexpr int kPatience = 12;          ///< steps without progress that end a descent
 constexpr int kMissIterations = 2000;  ///< of the one that measures how far a pose is out of reach
 constexpr int kStarts = 60;            ///< descents before a pose is given up
 constexpr int kSearchStarts = 200;     ///< descents when every branch is wanted
 constexpr int kIdleStarts = 40;        ///< descents in a row that find nothing new end that search
 constexpr int kNearStarts = 24;        ///< descents that look for a nearer branch
 constexpr double kNearEnough =
-    0.35;                          ///< a change of every joint below this needs no such look [rad]
-constexpr double kDamping = 0.02;  ///< λ = this · ‖e‖²
-constexpr double kDampingFloor = 1e-15;
-constexpr double kMostStep = 0.8;  ///< of one joint in one step [rad or m]
-constexpr double kDone = 1e-13;    ///< error below which no step is of use
+    0.35;  ///< a change of every joint below this needs no such look [rad]
 
 constexpr std::array<int, kMaxJoints> kPrimes{2,  3,  5,  7,  11, 13, 17, 19,
                                               23, 29, 31, 37, 41, 43, 47, 53};
@@ -39,20 +32,27 @@ double radical_inverse(int index, int base) {
   return value;
 }
 
+/// Half of what the arm reaches [m].
+double length_of(const ForwardKinematics& forward, const JointLimits& limits) {
+  JointVector travel = JointVector::Zero(forward.joints());
+  for (int i = 0; i < forward.joints(); ++i) {
+    if (forward.type(i) != JointType::kPrismatic) continue;
+    const double most =
+        std::max(std::abs(limits.position_min[i]), std::abs(limits.position_max[i]));
+    travel[i] = std::isfinite(most) ? most : 1.0;
+  }
+  const JointVector reach = forward.reach_bound(travel);
+  return std::max(0.5 * std::max(reach.maxCoeff(), travel.maxCoeff()), 1e-3);
+}
+
 }  // namespace
 
 NumericalInverse::NumericalInverse(const ForwardKinematics& forward, const JointLimits& limits,
                                    std::string why)
-    : LimitedInverse(forward, limits), why_(std::move(why)) {
-  JointVector travel = JointVector::Zero(forward_.joints());
-  for (int i = 0; i < forward_.joints(); ++i) {
-    if (forward_.type(i) != JointType::kPrismatic) continue;
-    const double most =
-        std::max(std::abs(limits_.position_min[i]), std::abs(limits_.position_max[i]));
-    travel[i] = std::isfinite(most) ? most : 1.0;
-  }
-  const JointVector reach = forward_.reach_bound(travel);
-  length_ = std::max(0.5 * std::max(reach.maxCoeff(), travel.maxCoeff()), 1e-3);
+    : LimitedInverse(forward, limits),
+      why_(std::move(why)),
+      length_(length_of(forward, limits)),
+      descent_(forward, limits, length_) {
   for (int sample = 1; sample <= 8; ++sample) {
     const Jacobian jacobian = forward_.jacobian(forward_.frames(start(sample)));
     for (int row = 0; row < 6; ++row) {
@@ -81,75 +81,6 @@ bool NumericalInverse::redundant(const InverseTask& task) const {
   return forward_.joints() > rows;
 }
 
-NumericalInverse::Descent NumericalInverse::descend(const InverseTask& task, JointVector q,
-                                                    bool bounded, int iterations,
-                                                    int patience) const {
-  using Square = JointMatrix;
-  const int joints = forward_.joints();
-  const int rows = task.position_only ? 3 : 6;
-  if (bounded) q = q.cwiseMax(limits_.position_min).cwiseMin(limits_.position_max);
-  Descent best{q, {1e300, 1e300}};
-  double least = 1e300;
-  int idle = 0;
-  double caution = 1.0;  // more damping while the error grows: a goal out of reach bends the valley
-  double before = 1e300;
-  for (int iteration = 0; iteration < iterations; ++iteration) {
-    const ChainFrames frames = forward_.frames(q);
-    Twist miss;
-    miss.head<3>() = task.goal.translation() - frames.pose_base_tool.translation();
-    miss.tail<3>().setZero();
-    if (!task.position_only) {
-      miss.tail<3>() =
-          rotation_log(task.goal.linear() * frames.pose_base_tool.linear().transpose());
-    }
-    const PoseError now{miss.head<3>().norm(), miss.tail<3>().norm()};
-    miss.head<3>() /= length_;
-    const double square = miss.squaredNorm();
-    idle = square < 0.7 * least ? 0 : idle + 1;
-    if (square < least) {
-      least = square;
-      best = {q, now};
-    }
-    const bool solved = best.error.within(kPoseTolerance);
-    if (now.within(kDone) || idle >= (solved ? 2 : patience)) break;
-
-    Jacobian jacobian = forward_.jacobian(frames);
-    jacobian.topRows<3>() /= length_;
-    caution = square > before ? std::min(4.0 * caution, 1e6) : std::max(0.7 * caution, 1.0);
-    before = square;
-    const double damping = kDamping * caution * square + kDampingFloor;
-    JointVector step(joints);
-    // A joint on its limit that would go on outwards is held, and the others solve without it.
-    for (int pass = 0; pass < joints; ++pass) {
-      if (joints <= rows) {
-        Square normal = jacobian.topRows(rows).transpose() * jacobian.topRows(rows);
-        normal.diagonal().array() += damping;
-        step = normal.ldlt().solve(jacobian.topRows(rows).transpose() * miss.head(rows));
-      } else {
-        Square normal = jacobian.topRows(rows) * jacobian.topRows(rows).transpose();
-        normal.diagonal().array() += damping;
-        const JointVector force = normal.ldlt().solve(JointVector(miss.head(rows)));
-        step = jacobian.topRows(rows).transpose() * force;
-      }
-      if (!bounded) break;
-      bool held = false;
-      for (int i = 0; i < joints; ++i) {
-        const bool outwards = (q[i] >= limits_.position_max[i] && step[i] > 0.0) ||
-                              (q[i] <= limits_.position_min[i] && step[i] < 0.0);
-        if (!outwards) continue;
-        jacobian.col(i).setZero();
-        held = true;
-      }
-      if (!held) break;
-    }
-    const double most = step.lpNorm<Eigen::Infinity>();
-    if (most > kMostStep) step *= kMostStep / most;
-    q += step;
-    if (bounded) q = q.cwiseMax(limits_.position_min).cwiseMin(limits_.position_max);
-  }
-  return best;
-}
-
 void NumericalInverse::add(const InverseTask& task, const JointVector& branch,
                            std::vector<JointVector>& branches) const {
   constexpr double kSame = 1e-6;
@@ -176,9 +107,8 @@ NumericalInverse::Search NumericalInverse::search(const InverseTask& task,
   int idle = 0;
   for (int index = 0; index < starts && idle < kIdleStarts; ++index) {
     // The reference itself is tried both ways, then the sequence.
-    const bool bounded = index % 2 == 1;
-    const Descent end =
-        descend(task, index < 2 ? reference : start(index), bounded, kIterations, kPatience);
+    const Descent::End end =
+        descent_.run(task, index < 2 ? reference : start(index), {.bounded = index % 2 == 1});
     if (!end.error.within(kPoseTolerance)) {
       if (end.error.position + length_ * end.error.angle <
           found.least.position + length_ * found.least.angle) {
@@ -229,7 +159,7 @@ JointVector NumericalInverse::near(const InverseTask& task, const JointVector& r
 
 std::optional<JointVector> NumericalInverse::follow(const InverseTask& task,
                                                     const JointVector& reference) const {
-  const Descent end = descend(task, reference, true, kIterations, kPatience);
+  const Descent::End end = descent_.run(task, reference, {.bounded = true});
   if (!end.error.within(kPoseTolerance) || !limits_.contains(end.q)) return std::nullopt;
   return end.q;
 }
@@ -247,7 +177,8 @@ void NumericalInverse::refuse(const InverseTask& task, const Search& search_resu
   // Beyond the boundary the descent creeps, so the distance gets a long one of its own.
   const InverseTask place_only(Eigen::Vector3d(task.goal.translation()));
   const auto measured = [&](const Search& miss) {
-    return descend(place_only, miss.nearest, false, kMissIterations, kMissIterations)
+    return descent_
+        .run(place_only, miss.nearest, {.iterations = kMissIterations, .patience = kMissIterations})
         .error.position;
   };
   if (task.position_only) refuse_unreachable("the position", measured(search_result));
@@ -289,8 +220,7 @@ JointVector NumericalInverse::near_unlimited(const InverseTask& task,
                                              const JointVector& reference) const {
   Search found;
   for (int index = 0; index < kStarts; ++index) {
-    const Descent end =
-        descend(task, index == 0 ? reference : start(index), false, kIterations, kPatience);
+    const Descent::End end = descent_.run(task, index == 0 ? reference : start(index), {});
     if (end.error.within(kPoseTolerance)) return turns_.unlimited(end.q, reference);
     if (end.error.position < found.least.position) {
       found.least = end.error;

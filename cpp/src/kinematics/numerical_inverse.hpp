@@ -6,14 +6,15 @@
 #include <string>
 #include <vector>
 
+#include "kinematics/descent.hpp"
 #include "kinematics/limited_inverse.hpp"
 
 namespace viapoint {
 
-/// Levenberg–Marquardt on SE(3) with error-scaled damping (Sugihara 2011), started from `near` and
-/// from the points of a Halton sequence (Halton 1960), in turn free (wrapped into the limits at the
-/// end) and held within the limits all the way. The budget is one of iterations, never of time: the
-/// answer is the same on any machine under any load.
+/// Descents (see Descent) started from `near` and from the points of a Halton sequence (Halton
+/// 1960), in turn free (wrapped into the limits at the end) and held within the limits all the way.
+/// The budget is one of iterations, never of time: the answer is the same on any machine under any
+/// load.
 class NumericalInverse final : public LimitedInverse {
  public:
   NumericalInverse(const ForwardKinematics& forward, const JointLimits& limits, std::string why);
@@ -33,11 +34,6 @@ class NumericalInverse final : public LimitedInverse {
                                                 const JointVector& reference) const;
 
  private:
-  /// Where one descent ended.
-  struct Descent {
-    JointVector q;
-    PoseError error;
-  };
   /// What all starts together found.
   struct Search {
     std::vector<JointVector> inside;   ///< distinct branches within the limits
@@ -46,9 +42,6 @@ class NumericalInverse final : public LimitedInverse {
     JointVector nearest;               ///< where that was
   };
 
-  /// @param patience steps without progress that end it
-  [[nodiscard]] Descent descend(const InverseTask& task, JointVector q, bool bounded,
-                                int iterations, int patience) const;
   /// @param reference the turn nearest to it is kept; @param enough stop at so many branches
   [[nodiscard]] Search search(const InverseTask& task, const JointVector& reference, int starts,
                               size_t enough) const;
@@ -59,7 +52,8 @@ class NumericalInverse final : public LimitedInverse {
   [[noreturn]] void refuse(const InverseTask& task, const Search& search) const;
 
   std::string why_;
-  double length_ = 1.0;          ///< the arm's size [m], to weigh metres against radians
+  double length_ = 1.0;  ///< the arm's size [m], to weigh metres against radians
+  Descent descent_;
   std::array<bool, 6> moves_{};  ///< x, y, z, and turns about them: what the arm can move
 };
 
