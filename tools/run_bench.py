@@ -3,8 +3,9 @@
 Subjects: ``tick`` (one cycle of the interpolator), ``plan`` (planning a move), ``certificate``
 (proving a motion), ``walk`` (timing of long paths), ``insertion`` (tool curves as joints, every
 proof checked), ``kinematics`` (inverse kinematics), all in C++ by viapoint-bench; ``sample``
-(states of a motion into numpy arrays) in Python; ``profiles`` (state to state) beside Ruckig.
-Each has its place in tools/benches.
+(states of a motion into numpy arrays) in Python; ``profiles`` (state to state) beside Ruckig,
+``paths`` (timing along paths, corners) beside toppra, copp and justblend. Each has its place in
+tools/benches.
 """
 
 import argparse
@@ -13,11 +14,11 @@ import json
 import sys
 from pathlib import Path
 
-from benches import core, documents, profiles, sampling, tables
+from benches import core, documents, paths, profiles, sampling, tables
 from benches.machine import ROOT, machine
 from benches.tables import Row
 
-SUBJECTS = (*core.SUBJECTS, "sample", "profiles")
+SUBJECTS = (*core.SUBJECTS, "sample", "profiles", "paths")
 
 
 def measure(subject: str, options: argparse.Namespace) -> tuple[list[Row], list[Row]]:
@@ -32,6 +33,8 @@ def measure(subject: str, options: argparse.Namespace) -> tuple[list[Row], list[
         return core.measure(options.program, subject, quick=options.quick), []
     if subject == "sample":
         return sampling.measure(quick=options.quick), []
+    if subject == "paths":
+        return paths.measure(options.program.parent, quick=options.quick), []
     if options.problems:
         return profiles.measure_sweep(options.program.parent, options.problems), []
     return profiles.measure(options.program.parent, quick=options.quick)
@@ -88,6 +91,8 @@ def main(arguments: list[str]) -> int:
     about = machine()
     if "profiles" in subjects and not options.problems:
         about |= profiles.versions()
+    if "paths" in subjects:
+        about |= paths.versions()
     for key, value in about.items():
         print(f"{key + ':':<11} {value}")
     lay_out = tables.markdown if options.markdown else tables.table

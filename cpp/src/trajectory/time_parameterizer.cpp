@@ -10,36 +10,11 @@
 #include "trajectory/path_timing_range.hpp"
 #include "trajectory/path_timing_span.hpp"
 #include "trajectory/path_timing_uniform.hpp"
-#include "viapoint/core/error.hpp"
+#include "trajectory/path_timing_valid.hpp"
 
 namespace viapoint {
 namespace path_timing {
 namespace {
-
-void require_valid(const JointPath& path, const JointLimits& limits) {
-  limits.validate();
-  if (path.empty()) {
-    throw MotionError(ErrorCode::kBadArgument, "A path without pieces has no timing.");
-  }
-  for (const JointPiece& piece : path.pieces()) {
-    if (piece.joints() != limits.joints()) {
-      throw MotionError(ErrorCode::kBadArgument, "The path and the limits differ in joints.");
-    }
-    if (!piece.coefficients.allFinite() || !std::isfinite(piece.length) || !(piece.length > 0.0)) {
-      throw MotionError(ErrorCode::kBadArgument,
-                        "A path piece has coefficients or a length that are not finite.");
-    }
-    if (!(piece.coefficients.bottomRows<5>().norm() > 0.0)) {
-      throw MotionError(ErrorCode::kBadArgument, "A path piece moves no joint.");
-    }
-    if (!(piece.scale > 0.0 && piece.scale <= 1.0) || !(piece.rate_limit > 0.0) ||
-        !(piece.rate_change_limit > 0.0)) {
-      throw MotionError(
-          ErrorCode::kBadArgument,
-          "A path piece has a scale outside (0, 1] or a ceiling that is not positive.");
-    }
-  }
-}
 
 /// How much of what is proven may be slack, relative.
 constexpr double kProofSlack = 1e-4, kExact = 1e-12;
@@ -94,7 +69,7 @@ std::vector<bool> too_coarse(const Course& course, const std::vector<TimedSpan>&
 
 /// The near-optimal timing; empty if the method does not get there.
 Timing quickest(const Course& course) {
-  constexpr double kFirstWeight = 0.1, kLastWeight = 0.006;
+  constexpr double kFirstWeight = 0.1, kLastWeight = 0.003;
   constexpr int kMostPasses = 6;
   constexpr double kUsed = 0.99;
   Grid grid = make_grid(course);
