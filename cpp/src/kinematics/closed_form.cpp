@@ -21,6 +21,16 @@ std::unique_ptr<const ClosedForm> recognise_closed_form(const ForwardKinematics&
   return nullptr;
 }
 
+std::unique_ptr<const ClosedForm> recognise_nearly_closed_form(const ForwardKinematics& forward) {
+  if (auto arm = SphericalWrist::recognise(forward, kNearlyExactAxes)) {
+    return std::make_unique<SphericalWrist>(*arm);
+  }
+  if (auto arm = ParallelWrist::recognise(forward, kNearlyExactAxes)) {
+    return std::make_unique<ParallelWrist>(*arm);
+  }
+  return nullptr;
+}
+
 std::optional<Eigen::Vector3d> nearest_point(const Eigen::Vector3d& origin_a,
                                              const Eigen::Vector3d& axis_a,
                                              const Eigen::Vector3d& origin_b,

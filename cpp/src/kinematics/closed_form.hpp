@@ -96,10 +96,17 @@ class ClosedForm {
 [[nodiscard]] std::unique_ptr<const ClosedForm> recognise_closed_form(
     const ForwardKinematics& forward);
 
+/// The closed form, of those with eight branches, of the true arm that this chain comes near, or
+/// nothing.
+[[nodiscard]] std::unique_ptr<const ClosedForm> recognise_nearly_closed_form(
+    const ForwardKinematics& forward);
+
 // What the solvers share.
 
 /// How exactly axes must be parallel, square or concurrent for a closed form to be used.
 inline constexpr double kExactAxes = 1e-9;
+/// The same for an arm out of true, whose closed form gives starts only.
+inline constexpr double kNearlyExactAxes = 0.02;
 /// A wrist beyond the boundary by no more than this is taken to be on it [m]; the forward
 /// kinematics still has to confirm the answer, to kPoseTolerance.
 inline constexpr double kBoundary = 8e-10;

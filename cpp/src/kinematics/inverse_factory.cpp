@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "kinematics/closed_form_inverse.hpp"
+#include "kinematics/nearly_closed_inverse.hpp"
 #include "kinematics/numerical_inverse.hpp"
 #include "kinematics/redundant_inverse.hpp"
 
@@ -17,6 +18,7 @@ std::unique_ptr<const InverseKinematics> make_inverse(const ForwardKinematics& f
   if (auto form = recognise_redundant_form(forward)) {
     return std::make_unique<RedundantInverse>(forward, limits, std::move(form));
   }
+  if (auto inverse = NearlyClosedInverse::make(forward, limits)) return inverse;
   const std::string why =
       forward.joints() == 6 ? "no three axes that meet in one point or, in the middle, are parallel"
                             : std::to_string(forward.joints()) + " joints";

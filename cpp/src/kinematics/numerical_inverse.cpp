@@ -170,6 +170,11 @@ std::optional<JointVector> NumericalInverse::find(const InverseTask& task,
   return found.inside.empty() ? std::nullopt : std::optional(found.inside.front());
 }
 
+std::vector<JointVector> NumericalInverse::find_all(const InverseTask& task,
+                                                    const JointVector& reference) const {
+  return search(task, reference, kSearchStarts, SIZE_MAX).inside;
+}
+
 void NumericalInverse::refuse(const InverseTask& task, const Search& search_result) const {
   if (!search_result.outside.empty()) {
     refuse_outside_limits(forward_, turns_, search_result.outside);

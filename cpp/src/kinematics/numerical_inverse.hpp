@@ -32,6 +32,10 @@ class NumericalInverse final : public LimitedInverse {
   /// The first solution within the limits that the starts find, without a word where there is none.
   [[nodiscard]] std::optional<JointVector> find(const InverseTask& task,
                                                 const JointVector& reference) const;
+  /// Every distinct branch that the search finds within the limits; none without a word.
+  [[nodiscard]] std::vector<JointVector> find_all(const InverseTask& task,
+                                                  const JointVector& reference) const;
+  [[nodiscard]] const Descent& descent() const { return descent_; }
 
  private:
   /// What all starts together found.

@@ -8,20 +8,21 @@
 
 namespace viapoint {
 
-std::optional<ParallelWrist> ParallelWrist::recognise(const ForwardKinematics& forward) {
+std::optional<ParallelWrist> ParallelWrist::recognise(const ForwardKinematics& forward,
+                                                      double exactly) {
   if (forward.joints() != 6) return std::nullopt;
   for (int i = 0; i < 6; ++i) {
     if (forward.type(i) != JointType::kRevolute) return std::nullopt;
   }
   const ChainFrames zero = forward.frames(JointVector::Zero(6));
   const auto& axis = zero.axis;
-  if (std::abs(axis[0].dot(axis[1])) > kExactAxes || axis[1].cross(axis[2]).norm() > kExactAxes ||
-      axis[1].cross(axis[3]).norm() > kExactAxes || std::abs(axis[3].dot(axis[4])) > kExactAxes ||
-      std::abs(axis[4].dot(axis[5])) > kExactAxes) {
+  if (std::abs(axis[0].dot(axis[1])) > exactly || axis[1].cross(axis[2]).norm() > exactly ||
+      axis[1].cross(axis[3]).norm() > exactly || std::abs(axis[3].dot(axis[4])) > exactly ||
+      std::abs(axis[4].dot(axis[5])) > exactly) {
     return std::nullopt;
   }
   const auto meeting = nearest_point(zero.origin[4], axis[4], zero.origin[5], axis[5]);
-  if (!meeting || axis[5].cross(*meeting - zero.origin[5]).norm() > kExactAxes) {
+  if (!meeting || axis[5].cross(*meeting - zero.origin[5]).norm() > exactly) {
     return std::nullopt;
   }
 
@@ -42,7 +43,8 @@ std::optional<ParallelWrist> ParallelWrist::recognise(const ForwardKinematics& f
   arm.sign4_ = axis[1].dot(axis[3]) > 0.0 ? 1.0 : -1.0;
   // The wrist's frame: x along axis 5, y along axes 2, 3, 4.
   const Eigen::Vector3d y = Eigen::Vector3d::UnitY();
-  arm.rotation_s_wrist_.col(0) = (pose_s_base.linear() * axis[4]).normalized();
+  const Eigen::Vector3d axis5 = pose_s_base.linear() * axis[4];
+  arm.rotation_s_wrist_.col(0) = (axis5 - axis5.y() * y).normalized();
   arm.rotation_s_wrist_.col(1) = y;
   arm.rotation_s_wrist_.col(2) = arm.rotation_s_wrist_.col(0).cross(y);
   const Eigen::Vector3d axis6 = arm.rotation_s_wrist_.transpose() * pose_s_base.linear() * axis[5];

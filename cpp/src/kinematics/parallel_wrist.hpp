@@ -18,8 +18,10 @@ namespace viapoint {
 
 class ParallelWrist final : public ClosedForm {
  public:
-  /// Nothing when the chain is not of this kind.
-  [[nodiscard]] static std::optional<ParallelWrist> recognise(const ForwardKinematics& forward);
+  /// Nothing when the chain is not of this kind; `exactly` is how exactly its axes must be square,
+  /// parallel and meet: what they miss by is taken for none [rad and m].
+  [[nodiscard]] static std::optional<ParallelWrist> recognise(const ForwardKinematics& forward,
+                                                              double exactly = kExactAxes);
 
   [[nodiscard]] std::string family() const override;
   void solve(const InverseTask& task, const JointVector& held,

@@ -8,7 +8,8 @@
 
 namespace viapoint {
 
-std::optional<SphericalWrist> SphericalWrist::recognise(const ForwardKinematics& forward) {
+std::optional<SphericalWrist> SphericalWrist::recognise(const ForwardKinematics& forward,
+                                                        double exactly) {
   if (forward.joints() != 6) return std::nullopt;
   for (int i = 0; i < 6; ++i) {
     if (forward.type(i) != JointType::kRevolute) return std::nullopt;
@@ -16,13 +17,13 @@ std::optional<SphericalWrist> SphericalWrist::recognise(const ForwardKinematics&
   const ChainFrames zero = forward.frames(JointVector::Zero(6));
   const auto& axis = zero.axis;
   const auto& origin = zero.origin;
-  if (std::abs(axis[0].dot(axis[1])) > kExactAxes || axis[1].cross(axis[2]).norm() > kExactAxes ||
-      std::abs(axis[3].dot(axis[4])) > kExactAxes || std::abs(axis[4].dot(axis[5])) > kExactAxes) {
+  if (std::abs(axis[0].dot(axis[1])) > exactly || axis[1].cross(axis[2]).norm() > exactly ||
+      std::abs(axis[3].dot(axis[4])) > exactly || std::abs(axis[4].dot(axis[5])) > exactly) {
     return std::nullopt;
   }
   const auto centre = nearest_point(origin[4], axis[4], origin[3], axis[3]);
-  if (!centre || axis[3].cross(*centre - origin[3]).norm() > kExactAxes ||
-      axis[5].cross(*centre - origin[5]).norm() > kExactAxes) {
+  if (!centre || axis[3].cross(*centre - origin[3]).norm() > exactly ||
+      axis[5].cross(*centre - origin[5]).norm() > exactly) {
     return std::nullopt;
   }
 

@@ -17,8 +17,10 @@ namespace viapoint {
 /// The geometry of such an arm, read off its chain at q = 0. Immutable. Threads: any.
 class SphericalWrist final : public ClosedForm {
  public:
-  /// Nothing when the chain is not of this kind.
-  [[nodiscard]] static std::optional<SphericalWrist> recognise(const ForwardKinematics& forward);
+  /// Nothing when the chain is not of this kind; `exactly` is how exactly its axes must be square,
+  /// parallel and meet: what they miss by is taken for none [rad and m].
+  [[nodiscard]] static std::optional<SphericalWrist> recognise(const ForwardKinematics& forward,
+                                                               double exactly = kExactAxes);
 
   [[nodiscard]] std::string family() const override;
   void solve(const InverseTask& task, const JointVector& held,
