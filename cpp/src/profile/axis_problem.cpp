@@ -154,6 +154,7 @@ PhaseChain AxisProblem::chain_of(bool upward, const UpwardMember& m) const noexc
   }
   chain.add(0.0, -sign * last, family.last_hold(m));
   chain.add(rising, -sign * last, (last + sign * to_.qdd) * per_up);
+  chain.measure_from_cruise();
   return chain;
 }
 

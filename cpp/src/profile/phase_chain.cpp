@@ -66,12 +66,12 @@ void append(const PhaseChain& chain, AxisMove& move) noexcept {
   move.append(chain.links[0].jerk, chain.links[0].duration);  // may prolong the brake's last
   AxisState state = move.end;
   for (int i = 1; i < chain.size; ++i) {
-    const auto& [duration, jerk, qdd] = chain.links[static_cast<size_t>(i)];
+    const PhaseChain::Link& link = chain.links[static_cast<size_t>(i)];
     chain.enter(i, state);
-    state.qddd = jerk;
-    move.phase[static_cast<size_t>(move.phases++)] = {duration, state};
-    move.total += duration;
-    state = advanced(state, jerk, duration);
+    state.qddd = link.jerk;
+    move.phase[static_cast<size_t>(move.phases++)] = {link.duration, state};
+    move.total += link.duration;
+    state = advanced(state, link.jerk, link.duration);
   }
   move.end = state;
 }

@@ -12,6 +12,7 @@ namespace viapoint {
 struct PhaseChain {
   struct Link {
     double duration, jerk, qdd;
+    double qd;  ///< at its start; known from the second one to the cruise
   };
   std::array<Link, 7> links;
   int size = 0;
@@ -20,12 +21,27 @@ struct PhaseChain {
 
   /// None where `duration` is zero or, by rounding, less.
   void add(double jerk, double qdd, double duration) noexcept {
-    if (duration > 0.0) links[static_cast<size_t>(size++)] = {duration, jerk, qdd};
+    if (duration > 0.0) links[static_cast<size_t>(size++)] = {duration, jerk, qdd, 0.0};
+  }
+  /// Works out the velocities before the cruise back from it: a start that is decades faster than
+  /// the cruise rounds by more than the cruise's limit can bear.
+  void measure_from_cruise() noexcept {
+    double qd = top;
+    for (int i = cruise - 1; i > 0; --i) {
+      Link& link = links[static_cast<size_t>(i)];
+      qd -= link.duration * (link.qdd + 0.5 * link.jerk * link.duration);
+      link.qd = qd;
+    }
   }
   /// Puts into `state` what is known at the start of a phase.
   void enter(int index, AxisState& state) const noexcept {
-    state.qdd = links[static_cast<size_t>(index)].qdd;
-    if (index == cruise || (cruise >= 0 && index == cruise + 1)) state.qd = top;
+    const Link& link = links[static_cast<size_t>(index)];
+    state.qdd = link.qdd;
+    if (index == cruise || (cruise >= 0 && index == cruise + 1)) {
+      state.qd = top;
+    } else if (index > 0 && index < cruise) {
+      state.qd = link.qd;
+    }
   }
 };
 

@@ -18,6 +18,23 @@ TEST(StateToState, SolvesTheFirstHundredThousandOfTheSweepAndEveryMotionIsSound)
   }
 }
 
+// Where one direction may be ten million times as fast as the other, the slow limit comes near the
+// rounding of the fast speed: a few motions are beyond a billionth of that limit, and no more.
+TEST(StateToState, KeepsSlowLimitsBesideVeryFastOnesAllButAlways) {
+  StateToState motion;
+  int beyond = 0;
+  for (std::uint64_t seed = 0; seed < 10'000; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const testing::StateProblem problem = testing::state_problem(seed, 7, 4.0);
+    ASSERT_EQ(motion.plan(problem.start, problem.end, problem.limits, problem.options),
+              MoveStatus::kSolved);
+    const testing::StateFaults faults = testing::judge(problem, motion);
+    ASSERT_EQ(faults.beyond(1e-8, 1e-7), "");
+    if (!faults.beyond(1e-8, 1e-9).empty()) ++beyond;
+  }
+  EXPECT_LE(beyond, 20);
+}
+
 // What the sweep is worth: the judge sees a millionth of a limit, of an end and of a cycle.
 TEST(StateToState, IsJudgedByAJudgeWhoSeesAMillionth) {
   int over_limits = 0, beside_end = 0, moving = 0;
