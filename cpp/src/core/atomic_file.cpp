@@ -1,11 +1,15 @@
 #include "viapoint/core/atomic_file.hpp"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <charconv>
+#include <csignal>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -16,11 +20,43 @@
 namespace viapoint {
 namespace {
 
+std::string way_out(int reason) {
+  switch (reason) {
+    case ENOSPC:
+    case EDQUOT:
+    case EFBIG:
+      return "make room on the disk, or give a file on another one";
+    case EISDIR:
+      return "give a file, this is a folder";
+    case EACCES:
+    case EPERM:
+    case EROFS:
+      return "give a file and a folder that this user has the rights for";
+    default:
+      return "check the path: the file, and every folder on the way to it";
+  }
+}
+
+/// What follows a NUL is lost on the way to the system: another file would be read or replaced.
+void require_whole(const std::string& path) {
+  const size_t end = path.find('\0');
+  if (end == std::string::npos) return;
+  Problem problem;
+  problem.code = ErrorCode::kFile;
+  problem.file = path.substr(0, end) + "\\0" + path.substr(end + 1);
+  problem.file.erase(std::remove(problem.file.begin(), problem.file.end(), '\0'),
+                     problem.file.end());
+  problem.message = "the name of a file cannot hold a NUL character";
+  problem.ways_out = {"give the name without it"};
+  throw MotionError(std::move(problem));
+}
+
 [[noreturn]] void fail(const std::string& what, const std::string& path) {
   Problem problem;
   problem.code = ErrorCode::kFile;
   problem.file = path;
   problem.message = what + ": " + std::strerror(errno);
+  problem.ways_out = {way_out(errno)};
   throw MotionError(std::move(problem));
 }
 
@@ -58,6 +94,8 @@ class Aside {
       : name_(free_name(target)),
         file_(::open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666)) {
     if (file_.get() < 0) fail("cannot create a file beside it", path);
+    // Held until the process ends, however it ends: tells others that this is no leftover.
+    ::flock(file_.get(), LOCK_EX | LOCK_NB);
   }
   ~Aside() { ::unlink(name_.c_str()); }
   Aside(const Aside&) = delete;
@@ -80,6 +118,33 @@ class Aside {
   Descriptor file_;
 };
 
+/// The process that a name made by Aside for `target` tells, or 0 for any other name.
+pid_t maker_of(const std::string& name, const std::filesystem::path& target) {
+  const std::string start = "." + target.filename().string() + ".";
+  if (name.compare(0, start.size(), start) != 0) return 0;
+  const char* end = name.data() + name.size();
+  pid_t process = 0;
+  const auto [dash, no_number] = std::from_chars(name.data() + start.size(), end, process);
+  if (no_number != std::errc() || dash == end || *dash != '-' || dash + 1 == end) return 0;
+  return std::all_of(dash + 1, end, [](char c) { return c >= '0' && c <= '9'; }) ? process : 0;
+}
+
+/// Removes what killed processes left beside `target`. A file whose process lives is not touched,
+/// and neither is one that is still locked: its process may live where its number means another,
+/// in a container for one. What cannot be removed stays; it does no harm but to the eye.
+void remove_leftovers(const std::filesystem::path& target, const std::filesystem::path& folder) {
+  std::error_code failed;
+  for (std::filesystem::directory_iterator entry(folder, failed), end; !failed && entry != end;
+       entry.increment(failed)) {
+    const pid_t maker = maker_of(entry->path().filename().string(), target);
+    if (maker <= 0 || ::kill(maker, 0) == 0 || errno != ESRCH) continue;
+    const Descriptor file(
+        ::open(entry->path().c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+    if (file.get() < 0 || ::flock(file.get(), LOCK_EX | LOCK_NB) != 0) continue;
+    ::unlink(entry->path().c_str());
+  }
+}
+
 /// A device or a pipe has no old content to keep: it is written to, never replaced.
 void write_through(const std::string& path, std::string_view content) {
   const Descriptor file(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
@@ -90,6 +155,7 @@ void write_through(const std::string& path, std::string_view content) {
 }  // namespace
 
 void write_file_atomically(const std::string& path, std::string_view content) {
+  require_whole(path);
   struct stat old{};
   const bool exists = ::stat(path.c_str(), &old) == 0;
   if (exists && !S_ISREG(old.st_mode)) {
@@ -103,6 +169,7 @@ void write_file_atomically(const std::string& path, std::string_view content) {
   const std::filesystem::path folder =
       target.has_parent_path() ? target.parent_path() : std::filesystem::path(".");
 
+  remove_leftovers(target, folder);
   const Aside aside(target, path);
   write_all(aside.fd(), content, path);
   if (exists && ::fchmod(aside.fd(), old.st_mode & 07777U) != 0)
@@ -116,6 +183,7 @@ void write_file_atomically(const std::string& path, std::string_view content) {
 }
 
 std::string read_file(const std::string& path) {
+  require_whole(path);
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) {
     errno = EISDIR;

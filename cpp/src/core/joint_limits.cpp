@@ -1,24 +1,20 @@
 #include "viapoint/core/joint_limits.hpp"
 
 #include <cmath>
-#include <sstream>
 #include <string>
 
 #include "viapoint/core/error.hpp"
+#include "viapoint/core/number_range.hpp"
+#include "viapoint/core/number_text.hpp"
 
 namespace viapoint {
 namespace {
 
-// Beyond these, products of a few limits leave the range in which doubles are exact.
-constexpr double kLeastRate = 1e-9;
-constexpr double kMostRate = 1e12;
-
 [[noreturn]] void refuse(int joint, const char* what, double value, const std::string& expected) {
-  std::ostringstream text;
-  text << what << " of joint " << joint + 1 << " is " << value << "; " << expected;
   Problem problem;
   problem.code = ErrorCode::kBadLimits;
-  problem.message = text.str();
+  problem.message = std::string(what) + " of joint " + std::to_string(joint + 1) + " is " +
+                    number_text(value) + "; " + expected;
   problem.joint = joint;
   problem.value = value;
   throw MotionError(std::move(problem));
@@ -67,7 +63,7 @@ void JointLimits::validate() const {
     if (std::isnan(position_min[i])) refuse(i, "position_min", position_min[i], "not a number");
     if (!(position_max[i] > position_min[i])) {
       refuse(i, "position_max", position_max[i],
-             "it must be above position_min, which is " + std::to_string(position_min[i]));
+             "it must be above position_min, which is " + number_text(position_min[i]));
     }
   }
   require_rates(velocity, "velocity limit");
@@ -89,8 +85,8 @@ void JointLimits::validate() const {
     if (!(coupling_upper[row] > coupling_lower[row])) {
       throw MotionError(ErrorCode::kBadLimits, "coupled limit " + std::to_string(row + 1) +
                                                    ": upper must be above lower, they are " +
-                                                   std::to_string(coupling_upper[row]) + " and " +
-                                                   std::to_string(coupling_lower[row]));
+                                                   number_text(coupling_upper[row]) + " and " +
+                                                   number_text(coupling_lower[row]));
     }
   }
 }

@@ -78,12 +78,17 @@ JointVector Node::joint_vector() const {
 void Node::refuse(const std::string& expected) const {
   std::string got = json_->dump();
   constexpr size_t kShown = 60;
-  if (got.size() > kShown) got = got.substr(0, kShown) + "…";
+  if (got.size() > kShown) {
+    size_t end = kShown;  // not within a character of several bytes
+    while (end > 0 && (static_cast<unsigned char>(got[end]) & 0xC0U) == 0x80U) --end;
+    got = got.substr(0, end) + "…";
+  }
   Problem problem;
   problem.code = ErrorCode::kBadProgram;
   problem.file = source_;
   problem.message =
       (path_.empty() ? "the program" : path_) + ": expected " + expected + ", got " + got;
+  problem.ways_out = {"correct it in the file, or write the file anew: program.save(path)"};
   throw MotionError(std::move(problem));
 }
 

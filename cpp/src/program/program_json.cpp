@@ -4,6 +4,7 @@
 
 #include "program/curve_json.hpp"
 #include "program/json_reader.hpp"
+#include "program/strict_json.hpp"
 #include "program/target_json.hpp"
 #include "viapoint/core/atomic_file.hpp"
 #include "viapoint/program/motion_program.hpp"
@@ -214,27 +215,8 @@ std::string to_json(const MotionProgram& program) {
   return text + "\n ]\n}\n";
 }
 
-namespace {
-
-[[noreturn]] void refuse_text(const std::string& source, std::string message) {
-  Problem problem;
-  problem.code = ErrorCode::kBadProgram;
-  problem.file = source;
-  problem.message = std::move(message);
-  throw MotionError(std::move(problem));
-}
-
-}  // namespace
-
 MotionProgram program_from_json(const std::string& text, const std::string& source) {
-  Json json;
-  try {
-    json = Json::parse(text);
-  } catch (const Json::parse_error& error) {
-    refuse_text(source, "not a JSON file, or cut short, at byte " + std::to_string(error.byte));
-  } catch (const Json::exception&) {  // a number beyond all doubles
-    refuse_text(source, "a number in it is too large to be read");
-  }
+  const Json json = program_json::parse_strictly(text, source);
   const Node root(json, "", source);
   root.only({"viapoint_program", "robot", "start", "tolerance", "steps"});
   if (root.at("viapoint_program").integer() != kFormat) {

@@ -71,16 +71,19 @@ Target target_of(const Node& node, bool timed) {
   } else {
     node.only({"joints", "pose", "position", "correction"});
   }
+  const int kinds = static_cast<int>(node.has("joints")) + static_cast<int>(node.has("pose")) +
+                    static_cast<int>(node.has("position"));
+  if (kinds != 1) node.refuse("one of \"joints\", \"pose\" and \"position\"");
+  if (node.has("correction") && !node.has("pose")) {
+    node.at("correction").refuse("no correction but of a pose");
+  }
   if (node.has("joints")) return JointTarget{node.at("joints").joint_vector()};
   if (node.has("pose")) {
     PoseTarget target{pose_of(node.at("pose"))};
     if (node.has("correction")) target.correction = node.at("correction").number();
     return target;
   }
-  if (node.has("position")) {
-    return PositionTarget{vector_of(node.at("position"))};
-  }
-  node.refuse("\"joints\", \"pose\" or \"position\"");
+  return PositionTarget{vector_of(node.at("position"))};
 }
 
 }  // namespace viapoint::program_json

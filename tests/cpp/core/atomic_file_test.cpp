@@ -1,6 +1,8 @@
 #include "viapoint/core/atomic_file.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -8,8 +10,10 @@
 #include <chrono>
 #include <csignal>
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "viapoint/core/error.hpp"
 
@@ -84,6 +88,68 @@ TEST_F(AtomicFile, RefusesByNameWhereItCannotWriteOrRead) {
   expect_named([&] { write_file_atomically(nowhere, "x"); }, nowhere);
   expect_named([&] { (void)read_file(nowhere); }, nowhere);
   expect_named([&] { (void)read_file(folder_); }, folder_);
+}
+
+TEST_F(AtomicFile, RefusesANameWithANulCharacter) {
+  const std::string path = folder_ / "a";
+  write_file_atomically(path, "precious");
+  const std::string other = path + std::string("\0b.json", 7);
+  EXPECT_THROW(write_file_atomically(other, "x"), MotionError);
+  EXPECT_THROW((void)read_file(other), MotionError);
+  EXPECT_EQ(read_file(path), "precious");
+  try {
+    write_file_atomically(other, "x");
+  } catch (const MotionError& error) {
+    EXPECT_EQ(error.code(), ErrorCode::kFile);
+    EXPECT_NE(std::string(error.what()).find("a\\0b.json"), std::string::npos) << error.what();
+  }
+}
+
+TEST_F(AtomicFile, TellsAWayOut) {
+  for (const auto& path : {folder_ / "no" / "such.json", folder_, std::filesystem::path()}) {
+    try {
+      (void)read_file(path.string());
+      ADD_FAILURE() << path;
+    } catch (const MotionError& error) {
+      EXPECT_FALSE(error.problem().ways_out.empty()) << error.what();
+    }
+  }
+}
+
+/// A number that no process has any more.
+pid_t process_that_ended() {
+  const pid_t child = ::fork();
+  if (child == 0) ::_exit(0);
+  ::waitpid(child, nullptr, 0);
+  return child;
+}
+
+TEST_F(AtomicFile, RemovesWhatKilledProcessesLeftOfTheSameFileAndNothingElse) {
+  const std::string dead = std::to_string(process_that_ended());
+  const std::string alive = std::to_string(::getppid());
+  const std::vector<std::string> gone{".p.json." + dead + "-0", ".p.json." + dead + "-17"};
+  const std::vector<std::string> kept{".p.json." + alive + "-0", ".p.json." + dead,
+                                      ".p.json." + dead + "-x",  ".q.json." + dead + "-0",
+                                      "p.json." + dead + "-0",   ".p.json.lock",
+                                      ".p.json." + dead + "-",   ".p.json.-1-0"};
+  for (const auto* names : {&gone, &kept}) {
+    for (const std::string& name : *names) std::ofstream(folder_ / name) << "part";
+  }
+  write_file_atomically(folder_ / "p.json", "whole");
+  for (const std::string& name : gone) EXPECT_FALSE(exists(folder_ / name)) << name;
+  for (const std::string& name : kept) EXPECT_TRUE(exists(folder_ / name)) << name;
+}
+
+TEST_F(AtomicFile, LeavesALeftoverThatSomebodyHoldsLocked) {
+  const std::filesystem::path name =
+      folder_ / (".p.json." + std::to_string(process_that_ended()) + "-0");
+  const int file = ::open(name.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
+  ASSERT_EQ(::flock(file, LOCK_EX), 0);
+  write_file_atomically(folder_ / "p.json", "whole");
+  EXPECT_TRUE(exists(name));
+  ::close(file);
+  write_file_atomically(folder_ / "p.json", "whole");
+  EXPECT_FALSE(exists(name));
 }
 
 TEST_F(AtomicFile, SurvivesKillAtAnyMoment) {

@@ -237,6 +237,66 @@ TEST(ProgramJson, RefusesWhatItWouldOtherwiseIgnore) {
   EXPECT_NE(message(R"({"wait": 1e400})").find("too large"), std::string::npos);
 }
 
+TEST(ProgramJson, RefusesEndlessBracketsByName) {
+  for (const char* bracket : {"[", "{\"a\":"}) {
+    std::string text;
+    for (int i = 0; i < 100'000; ++i) text += bracket;
+    EXPECT_NE(message_of(text).find("64 deep"), std::string::npos);
+  }
+  EXPECT_NE(message_of(std::string(100'000, '[') + std::string(100'000, ']')).find("64 deep"),
+            std::string::npos);
+  // At the bound, the value is read and shown whole or in part.
+  const std::string deep = std::string(60, '[') + std::string(60, ']');
+  EXPECT_NE(message_of(std::string(kHead) + deep + "]}").find("steps[0]: expected an object"),
+            std::string::npos);
+}
+
+TEST(ProgramJson, RefusesAMemberThatIsThereTwiceByItsPlace) {
+  EXPECT_NE(
+      message_of(std::string(kHead) + R"({"wait": 1}], "steps": []})").find("member \"steps\" is"),
+      std::string::npos);
+  const std::string message = message_of(
+      std::string(kHead) + R"({"wait": 1}, {"ptp": {"joints": [0, 0], "joints": [1, 1]}}]})");
+  EXPECT_NE(message.find("steps[1].ptp: member \"joints\" is there twice"), std::string::npos)
+      << message;
+}
+
+TEST(ProgramJson, RefusesATargetOfTwoKinds) {
+  for (const char* other : {R"("position": [0, 0, 0])", R"("pose": [])"}) {
+    EXPECT_NE(message_of(std::string(kHead) + R"({"ptp": {"joints": [0, 0], )" + other + "}}]}")
+                  .find("expected one of \"joints\", \"pose\" and \"position\""),
+              std::string::npos);
+  }
+  EXPECT_NE(message_of(std::string(kHead) + R"({"ptp": {"joints": [0, 0], "correction": 0.1}}]})")
+                .find("no correction but of a pose"),
+            std::string::npos);
+}
+
+TEST(ProgramJson, CutsALongTextBetweenCharacters) {
+  for (int length = 50; length < 60; ++length) {
+    std::string text(static_cast<size_t>(length), 'x');
+    for (int i = 0; i < 20; ++i) text += "é";
+    const std::string message = message_of(R"({"viapoint_program": 1, "robot": ")" + text +
+                                           R"(", "start": [], "steps": []})");
+    // No half of a character before the dots: an é is 0xC3 0xA9.
+    const size_t dots = message.rfind("…");
+    ASSERT_NE(dots, std::string::npos) << message;
+    EXPECT_NE(static_cast<unsigned char>(message[dots - 1]), 0xC3U) << length;
+  }
+}
+
+TEST(ProgramJson, TellsAWayOutOfEveryFault) {
+  for (const std::string& text : {std::string("{"), std::string(100, '['), std::string("[1e999]"),
+                                  std::string(R"({"a": 1, "a": 2})"), std::string("{}")}) {
+    try {
+      (void)program_from_json(text, "cell.json");
+      ADD_FAILURE() << "accepted: " << text;
+    } catch (const MotionError& error) {
+      EXPECT_FALSE(error.problem().ways_out.empty()) << error.what();
+    }
+  }
+}
+
 TEST(ProgramJson, RefusesAPoseThatIsNoRotation) {
   const std::string message = message_of(
       std::string(kHead) +

@@ -1,0 +1,13 @@
+/// @file
+#pragma once
+
+#include <string>
+
+namespace viapoint {
+
+/// The shortest decimal text that reads back to the same double, for messages that hold a value
+/// against its limit: two numbers that differ never look alike. "inf", "-inf" and "nan" for what
+/// is not finite. Real-time: not. Threads: any.
+[[nodiscard]] std::string number_text(double value);
+
+}  // namespace viapoint
