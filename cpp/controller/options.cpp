@@ -27,7 +27,9 @@ CommandLine read_command_line(int argc, const char* const* argv) {
                "run in virtual time: the same setpoints, as fast as the processor can");
   app.footer(
       "Exit codes: 0 the motion ran to its end; 1 program or motion refused, nothing moved;\n"
-      "2 wrong command line; 3 a file cannot be read or written; 4 the drive failed;\n"
+      "2 wrong command line; 3 a file cannot be read or the log not written (if the arm has "
+      "moved,\n"
+      "the result table is printed all the same); 4 the drive failed;\n"
       "5 stopped by SIGINT or SIGTERM, the arm rests on its path.");
   try {
     app.parse(argc, argv);

@@ -61,6 +61,21 @@ int wait_for_end(Job& job, StopSignals& signals) {
   return job.state() == RunState::kFinished ? kFinished : kStopped;
 }
 
+/// False where the log could not be written: the arm has moved all the same, and what is known of
+/// that is still worth telling.
+bool wrote_log(const Job& job, const std::string& path) {
+  const std::vector<LogRecord> log = job.log();
+  try {
+    write_log_csv(path, log);
+  } catch (const MotionError& error) {
+    spdlog::error("the motion is over, but its log was not written: {}",
+                  error.problem().describe());
+    return false;
+  }
+  spdlog::info("wrote {} cycles to {}", log.size(), path);
+  return true;
+}
+
 }  // namespace
 
 int exit_code_of(const MotionError& error) {
@@ -78,6 +93,8 @@ int exit_code_of(const MotionError& error) {
 
 int run_program(const Options& options, std::ostream& out) {
   check_log_can_be_written(options.log);
+  check_log_is_no_input(options.log, options.program);
+  check_log_is_no_input(options.log, options.robot);
   const RobotPtr robot = RobotModel::make(load_description(options.robot));
   const MotionProgram program = load_program(options.program);
   check_fingerprint(program, *robot, options.program);
@@ -94,11 +111,9 @@ int run_program(const Options& options, std::ostream& out) {
 
   const std::shared_ptr<Job> job = loop.run(trajectory);
   const int code = wait_for_end(*job, signals);
-  const std::vector<LogRecord> log = job->log();
-  write_log_csv(options.log, log);
-  spdlog::info("wrote {} cycles to {}", log.size(), options.log);
+  const bool logged = wrote_log(*job, options.log);
   out << result_table(*trajectory, *job) << std::flush;
-  return code;
+  return logged || code == kDriveFault ? code : kUnreadable;
 }
 
 }  // namespace viapoint::controller

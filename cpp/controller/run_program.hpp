@@ -9,9 +9,9 @@
 namespace viapoint::controller {
 
 /// Loads robot and program, plans, runs the motion in the real loop on the simulated drive, writes
-/// the log and prints the result table to `out`. Returns an ExitCode.
-/// @throws MotionError for everything that is refused before the arm moves, which a log that cannot
-///   be written is, too, and for a disk that fills up meanwhile
+/// the log and prints the result table to `out`, be the log written or not. Returns an ExitCode.
+/// @throws MotionError for everything that is refused before the arm moves, a log that cannot be
+///   written or would overwrite program or robot included
 [[nodiscard]] int run_program(const Options& options, std::ostream& out);
 
 /// The exit code that an error ends the program with.

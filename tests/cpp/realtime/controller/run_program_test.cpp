@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <pthread.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -11,6 +12,7 @@
 #include <thread>
 
 #include "controller/exit_code.hpp"
+#include "viapoint/core/atomic_file.hpp"
 #include "viapoint/kinematics/robot_model.hpp"
 #include "viapoint/planning/motion_planner.hpp"
 #include "viapoint/program/motion_program.hpp"
@@ -152,6 +154,39 @@ TEST_F(RunProgram, ARefusedProgramLeavesTheLogOfTheRunBefore) {
   EXPECT_EQ(written_log(), "of the run before");
   const auto files = std::distance(fs::directory_iterator(folder_), fs::directory_iterator());
   EXPECT_EQ(files, 2) << "something beside the program and the log was left";
+}
+
+TEST_F(RunProgram, ALogThatWouldOverwriteWhatIsReadIsRefusedBeforeAnythingMoves) {
+  const fs::path link = folder_ / "link.json";
+  fs::create_symlink(options_.program, link);
+  const fs::path robot = folder_ / "arm.yaml";
+  const std::string description = to_yaml(load_description("two_link"));
+  write_file_atomically(robot.string(), description);
+  for (const fs::path& log : {fs::path(options_.program), folder_ / "." / "program.json",
+                              fs::relative(options_.program), link, robot}) {
+    SCOPED_TRACE(log);
+    options_.robot = robot.string();
+    options_.log = log.string();
+    EXPECT_EQ(run(program()), kUnreadable);
+    EXPECT_NE(message_.find("would overwrite"), std::string::npos) << message_;
+    EXPECT_EQ(out_.str(), "");
+    EXPECT_EQ(load_program(options_.program).steps.size(), 2U);
+    EXPECT_EQ(read_file(robot.string()), description);
+  }
+}
+
+TEST_F(RunProgram, ALogThatFailsAfterTheMotionLeavesTheTableAndIsToldByTheExitCode) {
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);  // NOLINT(performance-no-int-to-ptr)
+  const rlimit small{4096, before.rlim_max};           // the program fits, the log does not
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+  const int code = run(program());
+  setrlimit(RLIMIT_FSIZE, &before);
+  static_cast<void>(std::signal(SIGXFSZ, handler));
+  EXPECT_EQ(code, kUnreadable) << message_;
+  EXPECT_NE(out_.str().find("finished"), std::string::npos) << out_.str();
+  EXPECT_FALSE(fs::exists(options_.log));
 }
 
 TEST_F(RunProgram, ASignalBringsTheArmToRestAndTheLogIsWritten) {
