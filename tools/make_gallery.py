@@ -39,13 +39,17 @@ def without_files() -> Iterator[None]:
 
 def _with_findings(code: str) -> str:
     drawn: list[dict[str, Any]] = []
-    save = vp.profile.Law.plot
 
-    def plot(law: vp.profile.Law, path: str, **options: object) -> None:
-        save(law, path, **options)  # type: ignore[arg-type]  # as the page gives them
-        drawn.append({"law": law, "path": path, **options})
+    def noted(kind: Any) -> Any:  # noqa: ANN401  # a context manager of mock's own
+        save = kind.plot
 
-    with mock.patch.object(vp.profile.Law, "plot", plot):
+        def plot(law: object, path: str, **options: object) -> None:
+            save(law, path, **options)
+            drawn.append({"law": law, "path": path, **options})
+
+        return mock.patch.object(kind, "plot", plot)
+
+    with noted(vp.profile.Law), noted(vp.profile.StateMotion):
         exec(compile(code, str(PAGE), "exec"), {"__name__": "gallery"})
     findings = "".join(_findings(picture) for picture in drawn)
     return f"```python\n{code}```\n" + (

@@ -1,4 +1,4 @@
-"""Pictures of a law: position and its derivatives over time, with their exact extremes."""
+"""Pictures of a law or a motion: position and derivatives over time, with their exact extremes."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -20,13 +20,39 @@ from .errors import BadArgumentError
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from ._law import Law, Part
+    from ._law import Extremes, Part
 
 QUANTITIES = ("position", "velocity", "acceleration", "jerk")
 COLOURS = (LINE, "#2e8b57", "#d07a00", "#7d4fa3", "#1aa0a0", "#b05a7a")
 SAMPLES_A_PART = 200
 JUMP = 1e-6
 """Share of the largest acceleration beyond which a step of it is an impulse of jerk."""
+
+
+class Course(Protocol):
+    """What a picture is drawn of: a law, or a motion from state to state."""
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """``()`` or ``(n,)``."""
+
+    @property
+    def start(self) -> float:
+        """[s]."""
+
+    @property
+    def end(self) -> float:
+        """[s]."""
+
+    @property
+    def duration(self) -> float:
+        """[s], above 0."""
+
+    def parts(self, axis: int = 0) -> list[Part]:
+        """Return the polynomials of one axis, in order of time; at least one."""
+
+    def extremes(self, derivative: int = 0) -> Extremes:
+        """Exact extremes of each axis."""
 
 
 @dataclass(frozen=True)
@@ -39,8 +65,8 @@ class Marks:
     limits: Mapping[str, float] = field(default_factory=dict)
 
 
-def save_law_plot(law: Law, path: str | os.PathLike[str], title: str, marks: Marks) -> None:
-    """Draw a law into a file whose ending names the format.
+def save_law_plot(law: Course, path: str | os.PathLike[str], title: str, marks: Marks) -> None:
+    """Draw a law or a motion into a file whose ending names the format.
 
     Raises
     ------
@@ -56,7 +82,7 @@ def save_law_plot(law: Law, path: str | os.PathLike[str], title: str, marks: Mar
     save_figure(draw_law(law, title, marks), path)
 
 
-def draw_law(law: Law, title: str = "", marks: Marks | None = None) -> Figure:
+def draw_law(law: Course, title: str = "", marks: Marks | None = None) -> Figure:
     """Draw one panel each for position, velocity, acceleration and jerk."""
     shown = marks or Marks()
     names = _names(law, shown)
@@ -89,7 +115,7 @@ def draw_law(law: Law, title: str = "", marks: Marks | None = None) -> Figure:
     return figure
 
 
-def _names(law: Law, marks: Marks) -> list[str]:
+def _names(law: Course, marks: Marks) -> list[str]:
     count = law.shape[0] if law.shape else 1
     if marks.names is None:
         return [f"axis {i}" for i in range(count)] if law.shape else ["law"]
@@ -98,12 +124,14 @@ def _names(law: Law, marks: Marks) -> list[str]:
     return [str(name) for name in marks.names]
 
 
-def _of_axis(values: Vector, law: Law, axis: int) -> Vector:
+def _of_axis(values: Vector, law: Course, axis: int) -> Vector:
     """Return the column of one axis of values (k,) or (k, n)."""
     return values[:, axis] if law.shape else values
 
 
-def _draw_curve(panel: Axes, law: Law, axis: int, derivative: int, colour: str, name: str) -> None:
+def _draw_curve(
+    panel: Axes, law: Course, axis: int, derivative: int, colour: str, name: str
+) -> None:
     """Draw each part for itself, so that a step is drawn as one, and join them."""
     times, values = [], []
     for part in law.parts(axis):
@@ -115,7 +143,7 @@ def _draw_curve(panel: Axes, law: Law, axis: int, derivative: int, colour: str, 
     panel.plot(np.concatenate(times), np.concatenate(values), color=colour, lw=1.6, label=name)
 
 
-def _draw_extremes(panel: Axes, law: Law, axis: int, derivative: int, colour: str) -> None:
+def _draw_extremes(panel: Axes, law: Course, axis: int, derivative: int, colour: str) -> None:
     found = law.extremes(derivative)
     place = axis if law.shape else ()
     size = max(abs(float(found.low[place])), abs(float(found.high[place])))
@@ -142,7 +170,7 @@ def _draw_extremes(panel: Axes, law: Law, axis: int, derivative: int, colour: st
         )
 
 
-def _draw_impulses(panel: Axes, law: Law, axis: int, colour: str) -> bool:
+def _draw_impulses(panel: Axes, law: Course, axis: int, colour: str) -> bool:
     """Where acceleration steps, jerk is an impulse: an arrow of its sign. True if there is one."""
     drawn = False
     parts = law.parts(axis)
@@ -181,7 +209,7 @@ def _draw_limit(panel: Axes, quantity: str, limits: Mapping[str, float]) -> None
             panel.axhline(bound, color=LIMIT, lw=1.0, ls="--")
 
 
-def _draw_points(panel: Axes, law: Law, marks: Marks) -> None:
+def _draw_points(panel: Axes, law: Course, marks: Marks) -> None:
     if marks.points is None:
         return
     times = numbers_of(marks.points[0], "times of points")
@@ -207,7 +235,7 @@ def _draw_points(panel: Axes, law: Law, marks: Marks) -> None:
 
 
 def _draw_legend(
-    figure: Figure, law: Law, names: list[str], marks: Marks, *, impulses: bool
+    figure: Figure, law: Course, names: list[str], marks: Marks, *, impulses: bool
 ) -> None:
     entries = [
         (Line2D([], [], color=COLOURS[i % len(COLOURS)], lw=1.6), name)

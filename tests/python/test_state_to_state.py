@@ -325,3 +325,21 @@ def test_a_lowered_velocity_limit_never_reverses_the_motion():
     slower = vp.profile.state_to_state(q, 5.0, v0=qd, a0=qdd, v_max=0.3, a_max=4.0, j_max=30.0)
     assert slower.extremes(1).low >= -1e-12
     assert slower.extremes(0).high <= 5.0 + 1e-12
+
+
+def test_a_motion_is_drawn_with_what_was_asked_for(tmp_path):
+    motion = state_to_state(START, END, v0=[0.5, 0.0, -0.5], v1=[0.0, 0.3, 0.0], sync="none")
+    assert (motion.start, motion.end) == (0.0, motion.duration)
+    motion.plot(
+        tmp_path / "motion.png",
+        title="a motion",
+        unit="m",
+        names=["a", "b", "c"],
+        limits={"velocity": 3.0},
+    )
+    assert (tmp_path / "motion.png").stat().st_size > 10_000
+    for wrong in ({"names": ["a", "b"]}, {"limits": {"speed": 1.0}}):
+        with pytest.raises(errors.BadArgumentError):
+            motion.plot(tmp_path / "wrong.png", **wrong)
+    with pytest.raises(errors.BadArgumentError, match="nothing moves"):
+        state_to_state(START, START).plot(tmp_path / "rest.png")
