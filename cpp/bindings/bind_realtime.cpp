@@ -250,6 +250,23 @@ void bind_realtime(py::module_& m) {
       },
       py::arg("motion"), py::arg("commands"), py::arg("cycle"),
       "The interpolator in virtual time: one record a cycle.");
+  m.def(
+      "simulate_jog",
+      [](const RobotHandle& robot, const Vector& start,
+         const std::vector<std::tuple<double, Vector>>& calls, double cycle) {
+        const int joints = robot.robot->joints();
+        std::vector<TimedJog> timed;
+        for (const auto& [time, velocity] : calls) {
+          timed.push_back({time, joints_from(velocity, "velocity", joints)});
+        }
+        const JointVector q = joints_from(start, "start", joints);
+        const Release release;
+        return LogHandle{simulate_jog(robot.robot->limits(), q, std::move(timed),
+                                      std::chrono::nanoseconds(std::llround(cycle * 1e9))),
+                         joints};
+      },
+      py::arg("robot"), py::arg("start"), py::arg("calls"), py::arg("cycle"),
+      "A jog in virtual time: one record a cycle.");
   m.def("run_states", &run_states, "Every state's name, in the order of the C++ enum.");
 }
 

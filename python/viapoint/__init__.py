@@ -39,7 +39,7 @@ from ._report import Report
 from ._robot import Robot, joint_robot, load_robot
 from ._run_log import RunLog
 from ._samples import Samples
-from ._simulation import simulate
+from ._simulation import simulate, simulate_jog
 from ._units import deg, mm
 from ._zone import Zone, deviation, joint_deviation, radius
 from .errors import MotionError
@@ -82,4 +82,5 @@ __all__ = [
     "profile",
     "radius",
     "simulate",
+    "simulate_jog",
 ]

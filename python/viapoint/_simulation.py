@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from . import _core
-from ._arguments import choice, number
+from ._arguments import ArrayLike, choice, number, vector
 from ._motion import CYCLE, Motion
 from ._program import Program, motion_of
+from ._robot import Robot
 from ._run_log import RunLog
 from ._samples import Samples
 from .errors import BadArgumentError
@@ -49,6 +50,65 @@ def simulate(
     period = number(cycle, "cycle", "s", least=1e-4, most=1.0)
     timed = [_command(command, f"commands[{i}]") for i, command in enumerate(commands)]
     return RunLog.of(_core.simulate(motion._core, timed, period), motion, period).samples
+
+
+def simulate_jog(
+    robot: Robot,
+    start: ArrayLike,
+    calls: Sequence[tuple[float, ArrayLike]],
+    *,
+    cycle: float = CYCLE,
+) -> Samples:
+    """Jog an arm in virtual time: what `Arm.jog` does, without waiting for it.
+
+    Deterministic, as fast as the processor; no drive and no thread take part.
+
+    Parameters
+    ----------
+    robot : Robot
+        The arm.
+    start : array_like, (n,)
+        Joints where it rests at first [rad or m].
+    calls : sequence of (float, array_like (n,))
+        When ``jog`` is called, from the start [s], and with which joint velocities [rad/s or m/s].
+        As on an arm each call counts for 250 ms: hold a button by calling again in time.
+    cycle : float
+        The controller's cycle [s].
+
+    Returns
+    -------
+    Samples
+        One a cycle, until the arm rests after the last call. ``move`` is -1 throughout.
+
+    Raises
+    ------
+    BadArgumentError
+        No pair of a time from 0 on and n finite numbers, or a time beyond what a log holds.
+    VelocityLimitError
+        A joint is asked for more than its velocity limit.
+
+    Examples
+    --------
+    >>> import viapoint as vp
+    >>> robot = vp.joint_robot(2, velocity=1.0, acceleration=5.0, jerk=50.0)
+    >>> held = [(0.1 * i, [0.5, 0.0]) for i in range(10)]
+    >>> samples = vp.simulate_jog(robot, [0.0, 0.0], held)
+    >>> bool(samples.qd.max() == 0.5 and samples.qd[-1].max() == 0.0)
+    True
+    """
+    period = number(cycle, "cycle", "s", least=1e-4, most=1.0)
+    timed = []
+    for i, call in enumerate(calls):
+        try:
+            time, velocity = call
+        except (TypeError, ValueError):
+            raise BadArgumentError(
+                f"calls[{i}] is {call!r}; it must be (seconds, velocities)."
+            ) from None
+        seconds = number(time, f"calls[{i}][0]", "s", least=0.0)
+        timed.append((seconds, vector(velocity, f"calls[{i}][1]", robot.joints)))
+    log = _core.simulate_jog(robot._core, vector(start, "start", robot.joints), timed, period)
+    return RunLog(**log.columns(), period=period, robot=robot, core=log, tools=()).samples
 
 
 def _command(command: Command, name: str) -> tuple[float, str, float]:

@@ -103,6 +103,54 @@ def test_wrong_velocities_are_refused(arm):
     assert not arm.jogging
 
 
+def held(velocity, seconds):
+    return [(0.1 * i, velocity) for i in range(round(10 * seconds))]
+
+
+def test_jog_in_virtual_time_keeps_every_limit_and_ends_250_ms_after_the_last_call(robot):
+    s = vp.simulate_jog(robot, [0.0, 0.0], held([0.5, -0.5], 1.0))
+    assert s.t[1] == 0.002
+    assert np.array_equal(s.qd[250], [0.5, -0.5])
+    assert np.all(s.qd[-1] == 0.0)
+    # The last call at 0.9 s counts until 1.15 s; stopping from 0.5 rad/s at 5 rad/s² takes 0.2 s.
+    assert 1.15 < s.t[-1] < 1.4
+    for rate, limit in ((s.qd, [1.0, 2.0]), (s.qdd, [5.0, 10.0]), (s.qddd, [50.0, 100.0])):
+        assert np.all(np.abs(rate) <= np.array(limit) * (1.0 + 1e-12))
+
+
+def test_jog_in_virtual_time_stops_at_the_position_limit(robot):
+    s = vp.simulate_jog(robot, [0.0, 0.0], held([0.0, 0.5], 2.0))
+    assert s.q[-1, 1] == 0.05
+    assert s.q[:, 1].max() <= 0.05 + 1e-12
+    assert np.all(s.q[:, 0] == 0.0)
+
+
+def test_jog_in_virtual_time_is_what_the_loop_does(robot):
+    arm = vp.connect("sim://joints", robot=robot)
+    with arm:
+        arm.jog([0.2, 0.0])
+        rest = until_rest(arm)
+    s = vp.simulate_jog(robot, [0.0, 0.0], [(0.0, [0.2, 0.0])])
+    assert np.array_equal(s.q[-1], rest)
+
+
+def test_jog_in_virtual_time_without_a_call_rests(robot):
+    s = vp.simulate_jog(robot, [0.1, 0.0], [])
+    assert len(s) == 1
+    assert np.array_equal(s.q[0], [0.1, 0.0])
+
+
+def test_wrong_calls_of_a_jog_in_virtual_time_are_refused(robot):
+    with pytest.raises(errors.VelocityLimitError) as caught:
+        vp.simulate_jog(robot, [0.0, 0.0], [(0.0, [0.0, 2.1])])
+    assert caught.value.joint == 1
+    for calls in ([(0.0,)], [0.0], [(-1.0, [0.1, 0.0])], [(0.0, [0.1])], [(1e9, [0.1, 0.0])]):
+        with pytest.raises(errors.BadArgumentError):
+            vp.simulate_jog(robot, [0.0, 0.0], calls)
+    with pytest.raises(errors.BadArgumentError):
+        vp.simulate_jog(robot, [0.0, np.nan], [])
+
+
 def test_disconnecting_brings_the_jog_to_rest(robot):
     with vp.connect("sim://joints", robot=robot) as arm:
         arm.jog([1.0, 0.0])

@@ -1,7 +1,6 @@
 #include "viapoint/realtime/controller_loop.hpp"
 
 #include <array>
-#include <cmath>
 #include <mutex>
 #include <string>
 #include <system_error>
@@ -215,29 +214,7 @@ std::shared_ptr<Job> ControllerLoop::run(std::shared_ptr<const Trajectory> traje
 }
 
 void ControllerLoop::jog(const JointVector& velocity) {
-  const JointLimits& limits = impl_->limits;
-  if (velocity.size() != limits.joints()) {
-    throw MotionError(ErrorCode::kBadArgument, "the jog has " + std::to_string(velocity.size()) +
-                                                   " velocities, the arm has " +
-                                                   std::to_string(limits.joints()) + " joints");
-  }
-  for (int i = 0; i < velocity.size(); ++i) {
-    if (!std::isfinite(velocity[i])) {
-      throw MotionError(ErrorCode::kBadArgument,
-                        "the jog's velocity of joint " + std::to_string(i + 1) + " is not finite");
-    }
-    if (std::abs(velocity[i]) <= limits.velocity[i]) continue;
-    Problem problem;
-    problem.code = ErrorCode::kVelocityLimit;
-    problem.message = "the jog asks joint " + std::to_string(i + 1) + " for " +
-                      std::to_string(velocity[i]) + " rad/s or m/s; its limit is " +
-                      std::to_string(limits.velocity[i]);
-    problem.ways_out = {"jog slower"};
-    problem.joint = i;
-    problem.value = velocity[i];
-    problem.limit = limits.velocity[i];
-    throw MotionError(problem);
-  }
+  admit_jog(velocity, impl_->limits);
   const std::lock_guard lock(impl_->admission);
   impl_->require_no_fault();
   impl_->await_log_of_ended_run();

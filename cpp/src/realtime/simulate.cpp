@@ -16,21 +16,33 @@ constexpr double kCommandSlack = 1e-9;
 /// More than an hour at 2 ms, and some 1.4 GB of records. A run that takes longer is a mistake.
 constexpr std::uint64_t kMostCycles = 2'000'000;
 
-[[noreturn]] void refuse(double cycles) {
+[[noreturn]] void refuse(double cycles, std::vector<std::string> ways_out) {
   std::ostringstream text;
   text << "the simulated run takes at least " << cycles << " cycles; at most " << kMostCycles
        << " fit in its log";
-  throw MotionError(ErrorCode::kBadArgument, text.str(),
-                    {"give a larger override", "resume a pause earlier", "give a longer cycle",
-                     "simulate the program in parts"});
+  throw MotionError(ErrorCode::kBadArgument, text.str(), std::move(ways_out));
+}
+
+[[noreturn]] void refuse(double cycles) {
+  refuse(cycles, {"give a larger override", "resume a pause earlier", "give a longer cycle",
+                  "simulate the program in parts"});
+}
+
+void require_positive(std::chrono::nanoseconds cycle) {
+  if (cycle.count() > 0) return;
+  throw MotionError(ErrorCode::kBadArgument,
+                    "the cycle is " + std::to_string(cycle.count()) + " ns; it must be positive");
+}
+
+void check_time(const char* what, double time) {
+  if (std::isfinite(time) && time >= 0.0) return;
+  throw MotionError(ErrorCode::kBadArgument, std::string(what) + " time is " +
+                                                 std::to_string(time) +
+                                                 " s; it must be finite and not negative");
 }
 
 void check(const TimedCommand& command) {
-  if (!std::isfinite(command.time) || command.time < 0.0) {
-    throw MotionError(ErrorCode::kBadArgument, "a command's time is " +
-                                                   std::to_string(command.time) +
-                                                   " s; it must be finite and not negative");
-  }
+  check_time("a command's", command.time);
   if (command.kind == TimedCommand::Kind::kOverride &&
       !(command.value >= 0.0 && command.value <= 1.0)) {
     throw MotionError(ErrorCode::kBadArgument, "an override of " + std::to_string(command.value) +
@@ -60,10 +72,7 @@ void apply(const TimedCommand& command, Interpolator& interpolator) {
 std::vector<LogRecord> simulate(const Trajectory& trajectory, const JointLimits& limits,
                                 std::vector<TimedCommand> commands,
                                 std::chrono::nanoseconds cycle) {
-  if (cycle.count() <= 0) {
-    throw MotionError(ErrorCode::kBadArgument,
-                      "the cycle is " + std::to_string(cycle.count()) + " ns; it must be positive");
-  }
+  require_positive(cycle);
   if (trajectory.pieces().empty()) {
     throw MotionError(ErrorCode::kEmptyProgram, "the motion is empty: there is nothing to run");
   }
@@ -103,6 +112,72 @@ std::vector<LogRecord> simulate(const Trajectory& trajectory, const JointLimits&
     }
     if (cycles > static_cast<double>(kMostCycles)) refuse(cycles);
   }
+  return log;
+}
+
+void admit_jog(const JointVector& velocity, const JointLimits& limits) {
+  if (velocity.size() != limits.joints()) {
+    throw MotionError(ErrorCode::kBadArgument, "the jog has " + std::to_string(velocity.size()) +
+                                                   " velocities, the arm has " +
+                                                   std::to_string(limits.joints()) + " joints");
+  }
+  for (int i = 0; i < velocity.size(); ++i) {
+    if (!std::isfinite(velocity[i])) {
+      throw MotionError(ErrorCode::kBadArgument,
+                        "the jog's velocity of joint " + std::to_string(i + 1) + " is not finite");
+    }
+    if (std::abs(velocity[i]) <= limits.velocity[i]) continue;
+    Problem problem;
+    problem.code = ErrorCode::kVelocityLimit;
+    problem.message = "the jog asks joint " + std::to_string(i + 1) + " for " +
+                      std::to_string(velocity[i]) + " rad/s or m/s; its limit is " +
+                      std::to_string(limits.velocity[i]);
+    problem.ways_out = {"jog slower"};
+    problem.joint = i;
+    problem.value = velocity[i];
+    problem.limit = limits.velocity[i];
+    throw MotionError(problem);
+  }
+}
+
+std::vector<LogRecord> simulate_jog(const JointLimits& limits, const JointVector& start,
+                                    std::vector<TimedJog> calls, std::chrono::nanoseconds cycle) {
+  require_positive(cycle);
+  if (start.size() != limits.joints() || !start.allFinite()) {
+    throw MotionError(ErrorCode::kBadArgument,
+                      "a jog starts at " + std::to_string(limits.joints()) + " finite joints");
+  }
+  for (const TimedJog& call : calls) {
+    check_time("a call's", call.time);
+    admit_jog(call.velocity, limits);
+  }
+  std::ranges::stable_sort(calls, {}, &TimedJog::time);
+
+  Interpolator interpolator(limits, cycle, start);
+  const double seconds = std::chrono::duration<double>(cycle).count();
+  const auto refuse_beyond = [](double cycles) {
+    if (cycles > static_cast<double>(kMostCycles)) {
+      refuse(cycles, {"call earlier", "give a longer cycle"});
+    }
+  };
+  if (!calls.empty()) refuse_beyond(calls.back().time / seconds);
+  std::vector<LogRecord> log;
+  auto next = calls.begin();
+  do {
+    const auto k = static_cast<std::uint64_t>(log.size());
+    const double now = static_cast<double>(k) * seconds;
+    for (; next != calls.end() && next->time <= now + kCommandSlack; ++next) {
+      interpolator.jog(next->velocity);
+    }
+    Setpoint setpoint;
+    LogRecord record;
+    interpolator.tick(setpoint);
+    interpolator.describe(setpoint, record);
+    record.cycle = k;
+    record.stamp = static_cast<std::int64_t>(k) * cycle.count();
+    log.push_back(record);
+    refuse_beyond(static_cast<double>(log.size()));
+  } while (next != calls.end() || interpolator.jogging());
   return log;
 }
 

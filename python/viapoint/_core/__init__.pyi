@@ -61,6 +61,7 @@ __all__: list[str] = [
     "read_file",
     "run_states",
     "simulate",
+    "simulate_jog",
     "write_file_atomically",
 ]
 
@@ -1184,6 +1185,21 @@ def simulate(
 ) -> Log:
     """
     The interpolator in virtual time: one record a cycle.
+    """
+
+def simulate_jog(
+    robot: RobotModel,
+    start: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+    calls: collections.abc.Sequence[
+        tuple[
+            typing.SupportsFloat | typing.SupportsIndex,
+            typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        ]
+    ],
+    cycle: typing.SupportsFloat | typing.SupportsIndex,
+) -> Log:
+    """
+    A jog in virtual time: one record a cycle.
     """
 
 def write_file_atomically(path: str, content: str) -> None:

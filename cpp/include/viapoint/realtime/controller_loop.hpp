@@ -127,4 +127,22 @@ struct TimedCommand {
                                               std::vector<TimedCommand> commands,
                                               std::chrono::nanoseconds cycle);
 
+/// Throws why an arm with these limits cannot be asked to jog at `velocity` (n,).
+void admit_jog(const JointVector& velocity, const JointLimits& limits);
+
+/// A call of ControllerLoop::jog in a simulated one.
+struct TimedJog {
+  double time = 0.0;  ///< [s] from the start
+  JointVector velocity;
+};
+
+/// Jogs the same Interpolator in virtual time: one record a cycle, from the first cycle to the one
+/// in which the arm rests after the last call. Each call counts for Interpolator::kJogLease.
+/// @param start where the arm rests, (n,)
+/// @throws MotionError(kBadArgument, kVelocityLimit)
+[[nodiscard]] std::vector<LogRecord> simulate_jog(const JointLimits& limits,
+                                                  const JointVector& start,
+                                                  std::vector<TimedJog> calls,
+                                                  std::chrono::nanoseconds cycle);
+
 }  // namespace viapoint
