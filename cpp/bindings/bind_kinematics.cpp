@@ -4,6 +4,7 @@
 #include "bindings.hpp"
 #include "viapoint/kinematics/dexterity.hpp"
 #include "viapoint/kinematics/inverse_kinematics.hpp"
+#include "viapoint/kinematics/pose_path.hpp"
 #include "viapoint/kinematics/workspace.hpp"
 
 namespace viapoint::python {
@@ -169,6 +170,24 @@ Array ik_batch(const RobotHandle& self, const Array& poses, const Array& near, b
   return joints;
 }
 
+Array ik_path(const RobotHandle& self, const Array& poses, const Vector& start, double step) {
+  if (poses.ndim() != 3 || poses.shape(1) != 4 || poses.shape(2) != 4) {
+    throw MotionError(ErrorCode::kBadArgument, "poses must have the shape (k, 4, 4).");
+  }
+  require_kinematics(*self.robot);
+  const JointVector first = joints_from(start, "start", self.robot->joints());
+  std::vector<Pose> way;
+  std::vector<JointVector> joints;
+  {
+    const py::gil_scoped_release release;
+    for (py::ssize_t k = 0; k < poses.shape(0); ++k) {
+      way.push_back(pose_from(Eigen::Map<const RowMajorPose>(poses.data() + 16 * k)));
+    }
+    joints = follow_poses(*self.robot, way, first, step);
+  }
+  return rows_of(joints);
+}
+
 void bind_dexterity(py::module_& m) {
   py::class_<VelocityEllipsoid>(m, "VelocityEllipsoid",
                                 "The tool rates that joint rates of length 1 make.")
@@ -267,6 +286,7 @@ void bind_inverse(py::class_<RobotHandle>& robot) {
             return Vector(inverse.solve_near(position, reference));
           },
           py::arg("position"), py::arg("near"))
+      .def("ik_path", &ik_path, py::arg("poses"), py::arg("start"), py::arg("largest_step"))
       .def("ik_batch", &ik_batch, py::arg("poses"), py::arg("near"), py::arg("nan"));
 }
 
@@ -276,6 +296,7 @@ void bind_kinematics(py::module_& m, py::class_<RobotHandle>& robot) {
   bind_configuration(m);
   bind_dexterity(m);
   bind_inverse(robot);
+  m.attr("LARGEST_STEP") = kLargestStep;
   robot
       .def(
           "dexterity",

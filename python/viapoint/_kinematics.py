@@ -19,6 +19,7 @@ from ._arguments import (
     pose,
     vector,
 )
+from ._rotations import even_rotations
 from .errors import BadArgumentError, PoseCorrectedWarning
 
 _ANY = _core.Configuration()
@@ -215,6 +216,45 @@ class Kinematics:
         nan = choice(unreachable, "unreachable", ("raise", "nan")) == "nan"
         return self._core.ik_batch(batch, references, nan)
 
+    def ik_path(
+        self, poses: ArrayLike, start: ArrayLike, *, largest_step: float = _core.LARGEST_STEP
+    ) -> Vector:
+        """Joints along a way told as poses: on one branch, without a jump.
+
+        Each pose takes the solution nearest to the one before. Where that leads to a jump, all
+        branches are followed at once from the start, with seven joints over a grid of what a pose
+        leaves open, and the shortest way is taken.
+
+        Parameters
+        ----------
+        poses : array_like, (k, 4, 4)
+            pose_base_tool [m], near enough to each other.
+        start : array_like, (n,)
+            The solution of the first pose nearest to these joints begins the way [rad or m].
+        largest_step : float
+            The most that a joint may change from one pose to the next [rad or m].
+
+        Returns
+        -------
+        ndarray, (k, n)
+            Joints [rad or m].
+
+        Raises
+        ------
+        BranchChangeError
+            Every choice ends at a limit or a singularity: with the `share` of the way where, and
+            the joint that would have to jump.
+        UnreachableError, OutsideLimitsError, UncontrolledError
+            A pose that has no solution, with its `share`.
+        NotARotationError, BadArgumentError
+            No poses.
+        """
+        return self._core.ik_path(
+            numbers_of(poses, "poses"),
+            vector(start, "start", self._core.joints),
+            number(largest_step, "largest_step", "rad or m", above=0.0),
+        )
+
     def configuration(self, q: ArrayLike) -> _core.Configuration:
         """On which side of its singularities the arm stands at q (n,), and its whole turns."""
         return self._core.configuration(vector(q, "q", self._core.joints))
@@ -298,6 +338,46 @@ class Kinematics:
             vector(start, "start", 3, "x, y, z"),
             turned,
         )
+
+    def dexterity_share(self, positions: ArrayLike, *, orientations: int = 200) -> Vector:
+        """Share of all tool orientations that the arm can hold at positions, within its limits.
+
+        1 is in the dexterous workspace, 0 out of reach. Orientations are spread evenly over all
+        rotations, the same ones every time (super-Fibonacci spirals: Alexa 2022).
+
+        Parameters
+        ----------
+        positions : array_like, (k, 3)
+            Tool positions in the base frame [m].
+        orientations : int
+            How many are tried; the share is told in steps of 1 over that.
+
+        Returns
+        -------
+        ndarray, (k,)
+            From 0 to 1.
+
+        Raises
+        ------
+        BadArgumentError
+            Another shape, or a number of orientations that is none.
+        UncontrolledError
+            The robot has no kinematics.
+        """
+        points = numbers_of(positions, "positions")
+        if points.ndim != 2 or points.shape[1] != 3:
+            raise BadArgumentError(
+                f"positions has the shape {points.shape}; it must be (k, 3): x, y, z."
+            )
+        tried = even_rotations(integer(orientations, "orientations", 1, 1_000_000))
+        poses = np.tile(np.eye(4), (len(tried), 1, 1))
+        poses[:, :3, :3] = tried
+        shares = np.empty(len(points))
+        for k, point in enumerate(points):
+            poses[:, :3, 3] = point
+            held = np.isfinite(self.ik_batch(poses, unreachable="nan")[:, 0])
+            shares[k] = held.mean()
+        return shares
 
     def workspace(self, samples: int = 10_000, *, seed: int = 1) -> tuple[Vector, Vector]:
         """Sample where the tool's point can be, uniformly over the joints.

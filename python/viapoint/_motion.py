@@ -10,6 +10,7 @@ import numpy as np
 
 from . import _core
 from ._arguments import ArrayLike, Vector, number, numbers_of
+from ._least_dexterity import LeastDexterity, least_dexterity
 from ._report import Report
 from ._robot import Robot
 from ._samples import Samples
@@ -127,6 +128,26 @@ class Motion:
         if instants.size == 0:
             raise BadArgumentError("times is empty; it must hold one instant or more.")
         return self._samples(self._core.sample_at(numbers_of(times, "times").reshape(-1)))
+
+    def least_dexterity(self, dt: float = 0.01) -> LeastDexterity:
+        """Find the smallest manipulability, isotropy and the like along the motion, and when.
+
+        Looked at every `dt`, then narrowed down between the neighbours: a narrower dip can be
+        missed. ``certificate.manipulability`` is looked at on the pieces alone.
+
+        Parameters
+        ----------
+        dt : float
+            Step [s], above 0.
+
+        Raises
+        ------
+        BadArgumentError
+            dt is not positive and finite.
+        UncontrolledError
+            The robot has no kinematics.
+        """
+        return least_dexterity(self, number(dt, "dt", "s", above=0.0))
 
     def _samples(self, columns: dict[str, Vector]) -> Samples:
         # mypy takes a column for a possible robot; the extension gives t, q and derivatives only.

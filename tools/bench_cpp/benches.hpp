@@ -20,5 +20,8 @@ void bench_insertion(int problems);
 /// Inverse kinematics of every built-in arm at random poses within its limits: times, poses left
 /// unsolved, and branches that miss the joints that made the pose. @param poses for each arm
 void bench_kinematics(int poses);
+/// Random straight lines, half of them through a singular wrist, followed pose by pose: steps that
+/// fail, jumps, and lines that no choice of branch follows. @param lines for each arm
+void bench_tracking(int lines);
 
 }  // namespace viapoint::bench

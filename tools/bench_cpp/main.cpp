@@ -9,7 +9,8 @@ namespace {
 
 constexpr std::string_view kUsage =
     "usage: viapoint-bench tick [TICKS] | plan [PROGRAMS] | certificate [PROGRAMS] |\n"
-    "                      walk [PATHS] | insertion [PROBLEMS] | kinematics [POSES] | all\n"
+    "                      walk [PATHS] | insertion [PROBLEMS] | kinematics [POSES] |\n"
+    "                      tracking [LINES] | all\n"
     "Prints one JSON object a line; times as its keys say.\n";
 
 constexpr int kTicks = 1'000'000;
@@ -17,6 +18,7 @@ constexpr int kPrograms = 100;
 constexpr int kPoses = 1'000'000;
 constexpr int kPaths = 20;
 constexpr int kProblems = 1000;
+constexpr int kLines = 300;
 
 int count_of(int argc, char** argv, int otherwise) {
   if (argc < 3) return otherwise;
@@ -30,6 +32,7 @@ int default_count(std::string_view command) {
   if (command == "tick") return kTicks;
   if (command == "kinematics") return kPoses;
   if (command == "insertion") return kProblems;
+  if (command == "tracking") return kLines;
   return command == "walk" ? kPaths : kPrograms;
 }
 
@@ -56,8 +59,11 @@ int main(int argc, char** argv) {
       bench_insertion(count);
     } else if (command == "kinematics") {
       bench_kinematics(count);
+    } else if (command == "tracking") {
+      bench_tracking(count);
     } else if (command == "all" && argc == 2) {
       bench_kinematics(kPoses);
+      bench_tracking(kLines);
       bench_tick(kTicks);
       bench_plan(kPrograms);
       bench_certificate(kPrograms);

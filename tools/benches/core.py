@@ -6,7 +6,7 @@ from pathlib import Path
 
 from benches.tables import Row
 
-SUBJECTS = ("tick", "plan", "certificate", "walk", "insertion", "kinematics")
+SUBJECTS = ("tick", "plan", "certificate", "walk", "insertion", "kinematics", "tracking")
 # What a quick look measures: enough to see the order of magnitude.
 QUICK = {
     "tick": 100_000,
@@ -15,6 +15,7 @@ QUICK = {
     "walk": 3,
     "insertion": 20,
     "kinematics": 10_000,
+    "tracking": 30,
 }
 
 

@@ -26,6 +26,7 @@ __all__: list[str] = [
     "Job",
     "JointLimits",
     "Knots",
+    "LARGEST_STEP",
     "Log",
     "MAX_JOINTS",
     "MotionProgram",
@@ -287,6 +288,12 @@ class RobotModel:
         position: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"],
         near: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
     ) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
+    def ik_path(
+        self,
+        poses: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
+        start: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        largest_step: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> numpy.typing.NDArray[numpy.float64]: ...
     def ik_quick(
         self, pose: typing.Any, near: typing.Any
     ) -> numpy.typing.NDArray[numpy.float64] | None:
@@ -1209,6 +1216,7 @@ def write_file_atomically(path: str, content: str) -> None:
 
 ANGLE_TOLERANCE: float = 0.00017453292519943296
 CYCLE: float = 0.002
+LARGEST_STEP: float = 0.2
 MAX_JOINTS: int = 16
 POSITION_TOLERANCE: float = 5e-05
 __version__: str = "0.1.0"
