@@ -2,6 +2,7 @@
 //   verify COUNT [FIRST]   solves the problems of the seeds FIRST.. and judges every motion
 //   worst COUNT            processor time of each of COUNT solutions
 //   plan JOINTS COUNT      solves and nothing else, for callgrind
+//   rest JOINTS COUNT      the same from rest to rest
 // Prints one JSON object; failures of `verify` go before it, one line each.
 #include <array>
 #include <charconv>
@@ -123,11 +124,15 @@ void worst_case(std::uint64_t count) {
       .add("clock_us", 1e6 * empty.quantile(0.5));
 }
 
-void plan_only(std::size_t joints, std::uint64_t count) {
+void plan_only(std::size_t joints, std::uint64_t count, bool at_rest) {
   StateToState motion;
   double sum = 0.0;
   for (std::uint64_t seed = 0; seed < count; ++seed) {
-    const StateProblem problem = testing::state_problem(seed, joints, kDecades);
+    StateProblem problem = testing::state_problem(seed, joints, kDecades);
+    for (std::size_t i = 0; at_rest && i < joints; ++i) {
+      problem.start[i] = {problem.start[i].q, 0.0, 0.0, 0.0};
+      problem.end[i] = {problem.end[i].q, 0.0, 0.0, 0.0};
+    }
     if (plan(problem, motion) == MoveStatus::kSolved) sum += motion.duration();
   }
   JsonLine("profiles", "planned")
@@ -155,12 +160,14 @@ int run(const std::vector<std::string_view>& arguments) {
     worst_case(number(arguments[1]));
     return 0;
   }
-  if (is("plan", 3, 3) && number(arguments[1]) <= static_cast<std::uint64_t>(kMaxJoints)) {
-    plan_only(number(arguments[1]), number(arguments[2]));
+  for (const bool at_rest : {false, true}) {
+    if (!is(at_rest ? "rest" : "plan", 3, 3)) continue;
+    if (number(arguments[1]) > static_cast<std::uint64_t>(kMaxJoints)) break;
+    plan_only(number(arguments[1]), number(arguments[2]), at_rest);
     return 0;
   }
   std::cerr << "usage: viapoint-profile-bench verify COUNT [FIRST] | worst COUNT | "
-               "plan JOINTS COUNT\n";
+               "plan|rest JOINTS COUNT\n";
   return 2;
 }
 

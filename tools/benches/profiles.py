@@ -6,6 +6,7 @@ solutions counts, for both. Whole calls from Python are timed apart: arrays in, 
 """
 
 import ctypes
+import itertools
 import re
 import shutil
 import statistics
@@ -215,13 +216,14 @@ def run(program: Path, *arguments: object) -> list[Row]:
     return read_lines("\n".join(figures))
 
 
-def instructions(program: Path, joints: int, count: int) -> float | None:
+def instructions(program: Path, kind: str, joints: int, count: int) -> float | None:
     """Count the instructions of one solution with callgrind; None where valgrind is not there."""
     if not shutil.which("valgrind"):
         return None
     command = ["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null"]
     command += ["--toggle-collect=viapoint::StateToState::plan(*"]
-    command += [str(program), "plan", str(joints), str(count)]
+    task = "rest" if kind == "rest to rest" else "plan"
+    command += [str(program), task, str(joints), str(count)]
     said = subprocess.run(command, capture_output=True, text=True, check=True).stderr
     collected = re.search(r"Collected\s*:\s*(\d+)", said)
     if not collected:
@@ -271,11 +273,11 @@ def measure(folder: Path, *, quick: bool) -> tuple[list[Row], list[Row]]:
     for row in worst:
         row["bench"] = "profiles: µs of processor time, limits over six decades"
     counted: list[Row] = []
-    for joints in JOINTS:
-        count = instructions(program, joints, 200 if quick else 2000)
+    for kind, joints in itertools.product(KINDS, JOINTS):
+        count = instructions(program, kind, joints, 200 if quick else 2000)
         shown: str | float = "valgrind is not installed" if count is None else round(count)
         counted.append(
-            {"bench": "profiles: instructions a solution", "case": f"{joints} joints",
+            {"bench": "profiles: instructions a solution", "case": f"{kind}, {joints}",
              "instructions": shown}
         )  # fmt: skip
     return durations + times + worst + counted, differences
