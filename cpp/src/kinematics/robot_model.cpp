@@ -11,6 +11,8 @@
 #include "kinematics/inverse_errors.hpp"
 #include "kinematics/inverse_factory.hpp"
 #include "viapoint/core/error.hpp"
+#include "viapoint/core/number_range.hpp"
+#include "viapoint/core/number_text.hpp"
 #include "viapoint/kinematics/inverse_kinematics.hpp"
 
 namespace viapoint {
@@ -89,6 +91,14 @@ std::string fingerprint_of(const RobotDescription& description) {
   throw MotionError(ErrorCode::kBadRobot, "robot \"" + description.name + "\": " + what);
 }
 
+void require_near(const RobotDescription& description, const Pose& pose, const std::string& what) {
+  if (!pose.matrix().allFinite()) refuse(description, what + " must be finite");
+  const double farthest = pose.translation().cwiseAbs().maxCoeff();
+  if (farthest <= kLongest) return;
+  refuse(description, what + " is " + number_text(farthest) + " m away; it may be up to " +
+                          number_text(kLongest) + " m: give lengths in metres");
+}
+
 void require_sound(const RobotDescription& description) {
   description.limits.validate();
   const size_t joints = static_cast<size_t>(description.limits.joints());
@@ -101,15 +111,16 @@ void require_sound(const RobotDescription& description) {
     refuse(description, "a chain of " + std::to_string(description.chain.size()) +
                             " joints with limits for " + std::to_string(joints));
   }
-  for (const Pose* pose : {&description.base, &description.flange, &description.tool}) {
-    if (!pose->matrix().allFinite()) refuse(description, "base, flange and tool must be finite");
-  }
+  require_near(description, description.base, "base");
+  require_near(description, description.flange, "flange");
+  require_near(description, description.tool, "tool");
   for (size_t i = 0; i < joints; ++i) {
     const ChainJoint& joint = description.chain[i];
-    if (std::abs(joint.axis.norm() - 1.0) > 1e-9 || !joint.before.matrix().allFinite()) {
-      refuse(description, "joint " + std::to_string(i + 1) +
-                              " needs an axis of length 1 and a finite placement");
+    const std::string name = "joint " + std::to_string(i + 1);
+    if (std::abs(joint.axis.norm() - 1.0) > 1e-9) {
+      refuse(description, name + " needs an axis of length 1");
     }
+    require_near(description, joint.before, "the placement of " + name);
   }
 }
 

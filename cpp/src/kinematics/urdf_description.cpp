@@ -7,7 +7,9 @@
 #include <limits>
 #include <mutex>
 
+#include "kinematics/xml_bounds.hpp"
 #include "viapoint/core/error.hpp"
+#include "viapoint/core/number_text.hpp"
 #include "viapoint/kinematics/robot_description.hpp"
 
 namespace viapoint {
@@ -16,6 +18,11 @@ namespace {
 /// URDF has no acceleration and jerk limits: these multiples of the velocity limit are chosen.
 constexpr double kAccelerationPerVelocity = 10.0;
 constexpr double kJerkPerVelocity = 100.0;
+
+/// liburdfdom calls itself for every element within another, and for every link of a chain when
+/// the model goes: far beyond any robot, and far from the end of the stack.
+constexpr int kDeepestElement = 100;
+constexpr int kMostElements = 50'000;
 
 [[noreturn]] void refuse(const std::string& source, const std::string& what,
                          std::vector<std::string> ways_out = {},
@@ -42,9 +49,33 @@ class Complaints final : public console_bridge::OutputHandler {
   std::string text_;
 };
 
+/// What mends a complaint of liburdfdom.
+std::string way_out_of(const std::string& complaint) {
+  const auto says = [&](const char* word) { return complaint.find(word) != std::string::npos; };
+  if (says("has no known type")) {
+    return "give every joint one of the types revolute, continuous, prismatic and fixed";
+  }
+  if (says("not unique")) return "give every link, joint and material a name of its own";
+  if (says("limit")) {
+    return "give every revolute and prismatic joint "
+           "<limit lower=\"...\" upper=\"...\" effort=\"...\" velocity=\"...\"/> [rad or m, per s]";
+  }
+  return "check that the file was written whole, and that every joint names a parent and a child "
+         "link of the file";
+}
+
 urdf::ModelInterfaceSharedPtr parse(const std::string& text, const std::string& source) {
   if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
     refuse(source, "the file is empty; expected a URDF with a <robot> element");
+  }
+  const XmlExtent extent = xml_extent(text);
+  if (extent.depth > kDeepestElement || extent.elements > kMostElements) {
+    refuse(source,
+           "it has " + std::to_string(extent.elements) + " elements, up to " +
+               std::to_string(extent.depth) + " in one another; a URDF may have " +
+               std::to_string(kMostElements) + ", and " + std::to_string(kDeepestElement) +
+               " in one another",
+           {"check that this is the URDF of a robot", "leave out what is not on the arm's chain"});
   }
   // liburdfdom reports through one handler for the whole process.
   static std::mutex one_at_a_time;
@@ -61,14 +92,8 @@ urdf::ModelInterfaceSharedPtr parse(const std::string& text, const std::string& 
   console_bridge::restorePreviousOutputHandler();
   if (model) return model;
   const std::string reason = failure.empty() ? complaints.text() : failure;
-  std::vector<std::string> ways_out{"check that the file was written whole"};
-  if (reason.find("limit") != std::string::npos) {
-    ways_out = {
-        "give every revolute and prismatic joint "
-        "<limit lower=\"...\" upper=\"...\" effort=\"...\" velocity=\"...\"/> [rad or m, per s]"};
-  }
   refuse(source, "not a URDF robot: " + (reason.empty() ? "it cannot be parsed" : reason),
-         ways_out);
+         {way_out_of(reason)});
 }
 
 Pose to_pose(const urdf::Pose& pose) {
@@ -110,10 +135,14 @@ urdf::LinkConstSharedPtr find_tip(const urdf::ModelInterface& model, const std::
     if (!link) refuse(source, "no link is called \"" + tip + "\"", {"the leaf links are: " + list});
     return link;
   }
-  if (leaves.empty()) refuse(source, "no moving joint between the root link and any leaf");
+  if (leaves.empty())
+    refuse(source, "no moving joint between the root link and any leaf",
+           {"check the types of the joints; for joints without a chain use joint_robot(...)"});
   if (leaves.size() != 1) {
-    refuse(source, "the robot branches: it has " + std::to_string(leaves.size()) + " leaf links",
-           {"name the tip, one of: " + list});
+    refuse(
+        source, "the robot branches: it has " + std::to_string(leaves.size()) + " leaf links",
+        {"name the link that carries the tool: load_robot(file, tip=\"...\") or --tip, one of: " +
+         list});
   }
   return model.getLink(leaves.front());
 }
@@ -132,10 +161,9 @@ void require_velocities(const std::vector<urdf::JointConstSharedPtr>& joints,
     const std::string name = "\"" + joint->name + "\"";
     if (first.empty()) {
       first = "joint " + name;
-      first += joint->limits
-                   ? ": the velocity limit is " + std::to_string(joint->limits->velocity) +
-                         ", it must be positive and finite"
-                   : " has no <limit>";
+      first += joint->limits ? ": the velocity limit is " + number_text(joint->limits->velocity) +
+                                   ", it must be positive and finite"
+                             : " has no <limit>";
     } else {
       others += (others.empty() ? "; nor have a velocity: " : ", ") + name;
     }
@@ -159,8 +187,8 @@ void add_limits(RobotDescription& out, const urdf::Joint& joint, const std::stri
   }
   if (!(low < high)) {
     refuse(source,
-           name + ": the lower limit " + std::to_string(low) + " must be below the upper limit " +
-               std::to_string(high),
+           name + ": the lower limit " + number_text(low) + " must be below the upper limit " +
+               number_text(high),
            {"write lower=\"...\" and upper=\"...\" in the <limit> of this joint"},
            ErrorCode::kBadLimits);
   }
@@ -202,16 +230,22 @@ RobotDescription description_from_urdf(const std::string& text, const std::strin
     if (joint->type == urdf::Joint::FIXED) continue;
     const std::string name = "joint \"" + joint->name + "\"";
     if (!moves(*joint)) {
-      refuse(source, name +
-                         " is floating or planar; only revolute, continuous, prismatic and fixed "
-                         "joints are supported");
+      refuse(source,
+             name +
+                 " is floating or planar; only revolute, continuous, prismatic and fixed "
+                 "joints are supported",
+             {"make it of revolute and prismatic joints, or end the chain before it with tip"});
     }
-    if (joint->mimic) refuse(source, name + " mimics another; that is not supported");
+    if (joint->mimic)
+      refuse(source, name + " mimics another; that is not supported",
+             {"end the chain before it with tip, or delete its <mimic>"});
     if (out.chain.size() == static_cast<size_t>(kMaxJoints)) {
-      refuse(source, "more than " + std::to_string(kMaxJoints) + " moving joints");
+      refuse(source, "more than " + std::to_string(kMaxJoints) + " moving joints",
+             {"end the chain earlier with tip", "make joints that stand still fixed"});
     }
     const Eigen::Vector3d axis(joint->axis.x, joint->axis.y, joint->axis.z);
-    if (!(axis.norm() > 1e-9)) refuse(source, name + ": its <axis> has no direction");
+    if (!(axis.norm() > 1e-9))
+      refuse(source, name + ": its <axis> has no direction", {"write it as <axis xyz=\"0 0 1\"/>"});
     ChainJoint chain;
     chain.type =
         joint->type == urdf::Joint::PRISMATIC ? JointType::kPrismatic : JointType::kRevolute;
@@ -222,7 +256,8 @@ RobotDescription description_from_urdf(const std::string& text, const std::strin
     out.joint_names.push_back(joint->name);
     before = Pose::Identity();
   }
-  if (out.chain.empty()) refuse(source, "no moving joint between the root link and the tip");
+  if (out.chain.empty())
+    refuse(source, "no moving joint between the root link and the tip", {"name a tip that moves"});
   out.flange = before;
   out.limits.coupling.resize(0, static_cast<Eigen::Index>(out.chain.size()));
   out.limits.validate();

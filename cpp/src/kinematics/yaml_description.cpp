@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "kinematics/yaml_map.hpp"
+#include "viapoint/core/number_range.hpp"
+#include "viapoint/core/number_text.hpp"
 #include "viapoint/core/units.hpp"
 #include "viapoint/kinematics/robot_description.hpp"
 
@@ -79,6 +81,11 @@ Pose read_pose(const YamlValue& value, double angle) {
     pose.translation() << xyz[0], xyz[1], xyz[2];
   }
   if (!pose.matrix().allFinite()) value.refuse("every number must be finite");
+  if (pose.translation().cwiseAbs().maxCoeff() > kLongest) {
+    value.refuse("a length is " + number_text(pose.translation().cwiseAbs().maxCoeff()) +
+                     " m; it may be up to " + number_text(kLongest) + " m",
+                 {"give lengths in metres"});
+  }
   return pose;
 }
 
@@ -88,6 +95,7 @@ class Reader {
 
   RobotDescription read() {
     top_.finish(kTopKeys);
+    require_joints_last();
     out_.name = top_.at("name", "a line \"name: my_arm\"").text();
     if (out_.name.empty()) top_.at("name").refuse("expected a name, got nothing");
     if (top_.has("title")) out_.title = top_.at("title").text();
@@ -139,12 +147,26 @@ class Reader {
     }
   }
 
+  /// A file cut short is always found out: within the joints by an open brace or their number, and
+  /// before them by their want. Behind them, a tool or a coupled limit would be lost unseen.
+  void require_joints_last() const {
+    bool behind = false;
+    for (const auto& entry : top_.value().node()) {
+      const YamlValue key(entry.first, top_.value().source(), "");
+      if (behind) {
+        key.refuse("key \"" + key.text() + "\" stands behind the joints, which come last",
+                   {"move it above \"joints:\"; so a file cut short is always found out"});
+      }
+      behind = key.text() == "joints";
+    }
+  }
+
   void read_joints() {
     const YamlValue joints = top_.at("joints", "a list \"joints:\" with one entry a joint");
     const std::vector<YamlValue> list = joints.list();
     const std::string count = std::to_string(list.size());
     const YamlValue axes = top_.at(
-        "axes", "\"axes: " + count + "\", the number of joints: a file cut short is found by it");
+        "axes", "\"axes: " + count + "\", the number of joints: so one that is lost is found out");
     if (list.empty() || axes.whole_number() != static_cast<int>(list.size())) {
       axes.refuse("says " + axes.text() + ", but " + count + " joints are listed",
                   {"if the file is whole, write \"axes: " + count + "\""});
@@ -165,6 +187,11 @@ class Reader {
 
   void read_joint(const YamlValue& value, Eigen::Index i) {
     YamlMap joint(value);
+    if (value.node().Style() != YAML::EmitterStyle::Flow) {
+      value.refuse("a joint stands in braces",
+                   {"write it as {name: ..., position: [...], ...}; so a file cut short is always "
+                    "found out"});
+    }
     std::vector<std::string> keys = kLimitKeys;
     if (form_ == Form::kAxes) keys.insert(keys.end(), {"origin", "axis"});
     if (form_ == Form::kStandard || form_ == Form::kModified) {
@@ -221,6 +248,12 @@ class Reader {
   void read_dh(YamlMap& joint, ChainJoint& chain) {
     const double d = dh_number(joint, "d", true);
     const double a = dh_number(joint, "a", true);
+    for (const char* key : {"d", "a"}) {
+      if (std::abs(dh_number(joint, key, true)) <= kLongest) continue;
+      joint.at(key).refuse(
+          "is " + joint.at(key).text() + " m; it may be up to " + number_text(kLongest) + " m",
+          {"give lengths in metres"});
+    }
     const double alpha = dh_number(joint, "alpha", true) * angle_;
     const double theta = dh_number(joint, "theta", false) * angle_;
     if (form_ == Form::kStandard) {
@@ -242,8 +275,8 @@ class Reader {
                  ErrorCode::kBadLimits);
     const auto range = position.numbers(2);
     if (!(range[0] < range[1])) {
-      position.refuse("the lower limit " + std::to_string(range[0]) +
-                          " must be below the upper limit " + std::to_string(range[1]),
+      position.refuse("the lower limit " + number_text(range[0]) +
+                          " must be below the upper limit " + number_text(range[1]),
                       {"write the lower limit first"}, ErrorCode::kBadLimits);
     }
     limits.position_min[i] = range[0] * unit;
@@ -254,6 +287,12 @@ class Reader {
       const double value = entry.number();
       if (!(value > 0.0) || !std::isfinite(value)) {
         entry.refuse("must be positive and finite, got " + entry.text(), {}, ErrorCode::kBadLimits);
+      }
+      if (!(value * unit >= kLeastRate && value * unit <= kMostRate)) {
+        entry.refuse("must be from " + number_text(kLeastRate / unit) + " to " +
+                         number_text(kMostRate / unit) + " " + per + "/s" + power + ", got " +
+                         entry.text(),
+                     {"check the unit: the file says " + per}, ErrorCode::kBadLimits);
       }
       return value * unit;
     };
@@ -313,11 +352,18 @@ class Reader {
 
 RobotDescription description_from_yaml(const std::string& text, const std::string& source) {
   try {
-    const YAML::Node root = YAML::Load(text);
+    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
+    const YAML::Node root = documents.empty() ? YAML::Node() : documents.front();
+    if (documents.size() > 1) {
+      YamlValue(documents[1], source, "")
+          .refuse("a second YAML document begins; a file holds one robot",
+                  {"put each robot into a file of its own", "delete the \"---\" between them"});
+    }
     if (!root.IsDefined() || root.IsNull()) {
       Problem problem;
       problem.code = ErrorCode::kBadRobot;
       problem.message = "the file is empty; expected a robot: name, units, axes, joints";
+      problem.ways_out = {"copy a built-in description and change it"};
       problem.file = source;
       throw MotionError(std::move(problem));
     }

@@ -192,6 +192,68 @@ TEST(YamlDescription, RefusesAFileCutShortAnywhere) {
   }
 }
 
+TEST(YamlDescription, RefusesWhatACutFileWouldLoseUnseen) {
+  // Behind the joints, and in joints without braces, a cut at a line's end leaves a whole robot.
+  for (const char* behind : {"tool: {xyz: [0, 0, 0.1]}\n", "title: late\n",
+                             "coupling: {matrix: [[1, 0]], lower: [-1], upper: [1]}\n"}) {
+    const Problem problem = problem_of(std::string(kGood) + behind);
+    EXPECT_TRUE(says(problem, "behind the joints")) << problem.describe();
+    EXPECT_EQ(problem.line, 8) << problem.describe();
+    EXPECT_TRUE(says(problem, "move it above")) << problem.describe();
+  }
+  const Problem open = problem_of(
+      "name: one\nunits: {angle: rad}\naxes: 1\njoints:\n  - name: a\n    axis: [0, 0, 1]\n"
+      "    position: [-1, 1]\n    velocity: 1\n    acceleration: 1\n    jerk: 10\n");
+  EXPECT_TRUE(says(open, "braces")) << open.describe();
+  EXPECT_EQ(open.line, 5);
+}
+
+TEST(YamlDescription, RefusesASecondDocument) {
+  const Problem problem = problem_of(std::string(kGood) + "---\nname: other\n");
+  EXPECT_TRUE(says(problem, "second YAML document")) << problem.describe();
+  EXPECT_NO_THROW((void)description_from_yaml(std::string("---\n") + kGood + "...\n", "one.yaml"));
+}
+
+TEST(YamlDescription, RefusesEndlessNestingByName) {
+  for (const char* bracket : {"[", "{", "{a: ", "- "}) {
+    std::string text = "name: ";
+    for (int i = 0; i < 100'000; ++i) text += bracket;
+    const Problem problem = problem_of(bracket[0] == '-' ? text.substr(6) : text);
+    EXPECT_EQ(problem.code, ErrorCode::kBadRobot) << bracket;
+    EXPECT_FALSE(problem.ways_out.empty());
+  }
+  // Each of these names ten of the one before: ten thousand million values, if they were copied.
+  std::string laughs = "a0: &a0 [0, 0, 0, 0, 0, 0, 0, 0, 0, 0]\n";
+  for (int i = 1; i < 10; ++i) {
+    const std::string one = "*a" + std::to_string(i - 1) + " ";
+    laughs += "a" + std::to_string(i) + ": &a" + std::to_string(i) + " [";
+    for (int k = 0; k < 10; ++k) laughs += (k == 0 ? "" : ", ") + one;
+    laughs += "]\n";
+  }
+  EXPECT_TRUE(says(problem_of(laughs), "unknown key \"a0\""));
+  const Problem inside = problem_of(with(kGood, "a: 1,", "a: &a [*a],"));
+  EXPECT_EQ(inside.code, ErrorCode::kBadRobot);
+}
+
+TEST(YamlDescription, RefusesLengthsThatNoArmHas) {
+  const Problem problem = problem_of(with(kGood, "a: 1,", "a: 1e300,"));
+  EXPECT_TRUE(says(problem, "1e+06 m")) << problem.describe();
+  EXPECT_EQ(problem.line, 6);
+  EXPECT_TRUE(says(problem_of(with(kGood, "dh:", "tool: {xyz: [0, -1e9, 0]}\ndh:")), "1e+06 m"));
+  // However a description was made.
+  RobotDescription far = arm("puma560")->description();
+  far.tool.translation().x() = 2e6;
+  EXPECT_THROW((void)RobotModel::make(far), MotionError);
+}
+
+TEST(YamlDescription, TellsALimitBeyondAllRangeInTheUnitOfTheFile) {
+  const Problem problem = problem_of(with(kGood, "velocity: 100", "velocity: 1e300"));
+  EXPECT_EQ(problem.code, ErrorCode::kBadLimits);
+  EXPECT_EQ(problem.line, 6);
+  EXPECT_TRUE(says(problem, "joints[0].velocity")) << problem.describe();
+  EXPECT_TRUE(says(problem, "deg/s, got 1e300")) << problem.describe();
+}
+
 TEST(YamlDescription, RefusesAnEmptyFile) {
   for (const char* text : {"", "\n\n", "# only a comment\n", "~\n"}) {
     const Problem problem = problem_of(text);

@@ -160,6 +160,55 @@ TEST(UrdfDescription, RefusesEmptyAndTruncatedFiles) {
   EXPECT_EQ(problem_of("<model/>").code, ErrorCode::kBadRobot);
 }
 
+TEST(UrdfDescription, RefusesElementsWithoutEndByName) {
+  constexpr int kMany = 200'000;
+  std::string opening;
+  std::string closing;
+  for (int i = 0; i < kMany; ++i) {
+    opening += "<link name='a'>";
+    closing += "</link>";
+  }
+  for (const std::string& text : {opening, opening + closing}) {
+    const Problem problem = problem_of("<robot name='x'>" + text + "</robot>");
+    EXPECT_EQ(problem.code, ErrorCode::kBadRobot);
+    EXPECT_TRUE(says(problem, "in one another"));
+    EXPECT_FALSE(problem.ways_out.empty());
+  }
+}
+
+TEST(UrdfDescription, TakesAChainAsLongAsItsBoundAllowsToPieces) {
+  // The links hold one another; the last in the order of names is the root.
+  constexpr int kLinks = 12'000;
+  std::string text = "<robot name='x'>";
+  const auto name = [](int i) { return "'l" + std::to_string(100'000 + kLinks - i) + "'"; };
+  for (int i = 0; i < kLinks; ++i) text += "<link name=" + name(i) + "/>";
+  for (int i = 1; i < kLinks; ++i) {
+    text += "<joint name='j" + std::to_string(i) + "' type='fixed'><parent link=" + name(i - 1) +
+            "/><child link=" + name(i) + "/></joint>";
+  }
+  EXPECT_TRUE(says(problem_of(text + "</robot>"), "no moving joint"));
+}
+
+TEST(UrdfDescription, PassesOverElementsThatAreNone) {
+  std::string text = kGood;
+  std::string unclosed;
+  for (int i = 0; i < 300; ++i) unclosed += "<a b='>'>";
+  text.insert(text.find("<link"), "<!-- " + unclosed + " --><note text='/>'/>");
+  EXPECT_EQ(description_from_urdf(text, "trio.urdf").chain.size(),
+            description_from_urdf(kGood, "trio.urdf").chain.size());
+}
+
+TEST(UrdfDescription, SaysWhatMendsAComplaint) {
+  const auto way = [](const Problem& problem) {
+    return problem.ways_out.empty() ? "" : problem.ways_out.front();
+  };
+  EXPECT_NE(way(problem_of(with(kGood, "type=\"continuous\"", "type=\"ball\""))).find("types"),
+            std::string::npos);
+  std::string twice = kGood;
+  twice.insert(twice.find("<link"), "<link name=\"base\"/>");
+  EXPECT_NE(way(problem_of(twice)).find("name of its own"), std::string::npos);
+}
+
 TEST(UrdfDescription, RefusesJointsItCannotMove) {
   EXPECT_TRUE(
       says(problem_of(with(kGood, "type=\"continuous\"", "type=\"floating\"")), "floating"));

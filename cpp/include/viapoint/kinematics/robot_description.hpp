@@ -44,7 +44,8 @@ void set_robot_directory(const std::filesystem::path& directory);
 ///   joint an origin: {xyz, rpy or rotation} and an axis, or kinematics: none,
 ///   base, flange, tool: {xyz, rpy or rotation}, coupling: {matrix, lower, upper}, sources, chosen,
 ///   joints: list of {name, type, ..., position: [min, max], velocity, acceleration, jerk}.
-/// Lengths are in metres. `axes` must match the list, so that a file cut short is refused.
+/// Lengths are in metres. `joints` comes last, each in braces, and `axes` tells how many: so a file
+/// cut short anywhere is refused. A file holds one document.
 /// @throws MotionError(kBadRobot, kBadLimits) with line and key
 [[nodiscard]] RobotDescription description_from_yaml(const std::string& text,
                                                      const std::string& source);
