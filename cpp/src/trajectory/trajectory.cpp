@@ -10,10 +10,10 @@
 namespace viapoint {
 namespace {
 
+/// @pre find_fault() found nothing
 void add(const TrajectoryPiece& piece, OutputEffect& effect) {
   for (int i = 0; i < piece.outputs; ++i) {
     const OutputChange& change = piece.output[static_cast<size_t>(i)];
-    if (change.index < 0 || change.index >= 64) continue;
     const std::uint64_t bit = std::uint64_t{1} << change.index;
     effect.changed |= bit;
     effect.on = change.value ? effect.on | bit : effect.on & ~bit;

@@ -15,6 +15,17 @@ bool all_finite(const TrajectoryPiece& piece) {
          });
 }
 
+/// The first output of the piece that there is none of.
+std::optional<int> unknown_output(const TrajectoryPiece& piece) {
+  for (size_t i = 0; i < static_cast<size_t>(piece.outputs); ++i) {
+    const int index = piece.output[i].index;
+    if (index < 0 || index >= kDigitalOutputs) return index;
+  }
+  return std::nullopt;
+}
+
+bool is_count(int outputs) { return outputs >= 0 && outputs <= kMaxOutputsAPiece; }
+
 bool is_duration(double seconds) { return seconds > 0.0 && std::isfinite(seconds); }
 
 std::string describe_fault(const TrajectoryPiece& piece, int joints) {
@@ -27,8 +38,10 @@ std::string describe_fault(const TrajectoryPiece& piece, int joints) {
     text << "lasts " << piece.duration << " s; it must be more than 0 and finite";
   } else if (!all_finite(piece)) {
     text << "has a coefficient that is not a finite number";
-  } else {
+  } else if (!is_count(piece.outputs)) {
     text << "changes " << piece.outputs << " outputs; allowed are 0 to " << kMaxOutputsAPiece;
+  } else if (const std::optional<int> output = unknown_output(piece)) {
+    text << "changes output " << *output << "; outputs are 0 to " << kDigitalOutputs - 1;
   }
   return text.str();
 }
@@ -37,8 +50,8 @@ std::string describe_fault(const TrajectoryPiece& piece, int joints) {
 
 std::optional<std::string> find_fault(const TrajectoryPiece& piece, int joints) {
   const bool sound = piece.joints >= 1 && piece.joints <= kMaxJoints && piece.joints == joints &&
-                     is_duration(piece.duration) && all_finite(piece) && piece.outputs >= 0 &&
-                     piece.outputs <= kMaxOutputsAPiece;
+                     is_duration(piece.duration) && all_finite(piece) && is_count(piece.outputs) &&
+                     !unknown_output(piece);
   if (sound) return std::nullopt;
   return describe_fault(piece, joints);
 }

@@ -132,8 +132,19 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"InfiniteTiming",
                 [](auto& p) { p[1].timing[2] = -std::numeric_limits<double>::infinity(); },
                 "not a finite number"},
-        Refusal{"TooManyOutputs", [](auto& p) { p[0].outputs = kMaxOutputsAPiece + 1; },
-                "outputs"}),
+        Refusal{"TooManyOutputs", [](auto& p) { p[0].outputs = kMaxOutputsAPiece + 1; }, "outputs"},
+        Refusal{"OutputBeyondTheLast",
+                [](auto& p) {
+                  p[0].outputs = 1;
+                  p[0].output[0].index = 64;
+                },
+                "changes output 64; outputs are 0 to 63"},
+        Refusal{"OutputBelowZero",
+                [](auto& p) {
+                  p[0].outputs = 1;
+                  p[0].output[0].index = -1;
+                },
+                "changes output -1"}),
     [](const auto& refusal) { return refusal.param.name; });
 
 TEST(Trajectory, RefusesLimitsOfAnotherArm) {
