@@ -155,10 +155,16 @@ def writing(path: str | os.PathLike[str]) -> Iterator[None]:
     FileError
         With the path and the system's reason.
     """
+    name = os.fspath(path)
+    if "\0" in name:
+        raise FileError(
+            f"{name!r} cannot be written: the name of a file cannot hold a NUL character.",
+            file=name.replace("\0", "\\0"),
+            ways_out=["Give the name without it."],
+        )
     try:
         yield
     except OSError as error:
-        name = os.fspath(path)
         raise FileError(
             f"{name} cannot be written: {error.strerror or error}.",
             file=name,

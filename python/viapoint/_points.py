@@ -8,45 +8,25 @@ import os
 import warnings
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 
 from . import _core
 from ._arguments import ArrayLike, Vector, choice, vector, writing
+from ._point_file import FORMAT, VERSION, TaughtPoint, is_text, read_points
 from ._program import Program
 from ._robot import Robot, load_robot, require_robot, require_within_limits
 from ._zone import ZoneLike
 from .errors import (
     BadArgumentError,
-    BadProgramError,
     EmptyProgramError,
     FileError,
-    MotionError,
     OtherRobotWarning,
     PoseError,
 )
 from .frames import Frame
-
-FORMAT = "viapoint points"
-VERSION = 1
-
-
-@dataclass(frozen=True)
-class _Point:
-    """Joints as they were taught, and the frame they were taught in as it stood then."""
-
-    q: Vector
-    frame: Frame | None = None
-
-    def json(self) -> dict[str, Any]:
-        """Return what the file holds of it."""
-        entry: dict[str, Any] = {"q": self.q.tolist()}
-        if self.frame is not None:
-            entry["frame"] = {"name": self.frame.name, "pose": self.frame.pose.tolist()}
-        return entry
 
 
 class PointList:
@@ -54,8 +34,9 @@ class PointList:
 
     Every `record` is on disk when it returns: the file is written aside and renamed, so that a
     crash leaves the old list or the new one, and processes that teach into one file wait for each
-    other (at the empty file ``.<name>.lock`` beside it). A file that is damaged raises and is left
-    alone.
+    other (at the empty file ``.<name>.lock`` beside it). A file that is damaged, or says what would
+    be ignored, raises and is left alone. Points outside the robot's limits are read, so that they
+    can be taught anew or removed; `program` refuses them by name.
 
     Parameters
     ----------
@@ -80,10 +61,10 @@ class PointList:
                 file=str(self.path),
                 ways_out=["To begin a new one, give its robot: PointList(path, robot)."],
             )
-        self._points: dict[str, _Point] = {}
+        self._points: dict[str, TaughtPoint] = {}
         self._fingerprint = ""
         if self.path.exists():
-            name, self._fingerprint, self._points = _read(self.path, robot)
+            name, self._fingerprint, self._points = read_points(self.path, robot)
             self.robot = load_robot(name) if robot is None else robot
         elif robot is not None:
             self.robot = require_robot(robot)
@@ -178,6 +159,11 @@ class PointList:
         """
         if not isinstance(name, str) or not name.strip():
             raise BadArgumentError(f"name is {name!r}; a point needs a name.")
+        if not is_text(name):
+            raise BadArgumentError(
+                f"name is {name!r}; half a surrogate pair cannot be written to a file.",
+                ways_out=["Give a name of whole characters."],
+            )
         joints = vector(q, "q", self.robot.joints)
         if frame is not None and not (isinstance(frame, Frame) and frame.name):
             raise BadArgumentError(
@@ -188,7 +174,7 @@ class PointList:
         with self._locked():
             # Another process may have taught meanwhile: what is on disk counts.
             points = self._on_disk() if self.path.exists() else dict(self._points)
-            points[name] = _Point(joints, frame)
+            points[name] = TaughtPoint(joints, frame)
             self._write(points)
 
     def remove(self, name: str) -> None:
@@ -306,11 +292,11 @@ class PointList:
         finally:
             os.close(held)
 
-    def _on_disk(self) -> dict[str, _Point]:
-        _, self._fingerprint, points = _read(self.path, self.robot)
+    def _on_disk(self) -> dict[str, TaughtPoint]:
+        _, self._fingerprint, points = read_points(self.path, self.robot)
         return points
 
-    def _write(self, points: dict[str, _Point]) -> None:
+    def _write(self, points: dict[str, TaughtPoint]) -> None:
         fingerprint = self._fingerprint or self.robot.fingerprint
         document = {
             "format": FORMAT,
@@ -322,67 +308,3 @@ class PointList:
         text = json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
         _core.write_file_atomically(str(self.path), text)
         self._points, self._fingerprint = points, fingerprint
-
-
-def _read(path: Path, robot: Robot | None) -> tuple[str, str, dict[str, _Point]]:
-    """Read and check a point file: the robot's name and fingerprint, and the points."""
-    try:
-        document = json.loads(_core.read_file(str(path)))
-    except json.JSONDecodeError as error:
-        raise _damaged(path, f"it is no JSON: {error.msg}", error.lineno) from None
-    except UnicodeDecodeError:
-        raise _damaged(path, "it is no UTF-8 text") from None
-    except RecursionError:
-        raise _damaged(path, "it is nested too deeply") from None
-    if not isinstance(document, dict) or document.get("format") != FORMAT:
-        raise _damaged(path, f'the key "format" must be "{FORMAT}"')
-    if document.get("version") != VERSION:
-        raise _damaged(path, f'the key "version" must be {VERSION}')
-    name = document.get("robot")
-    if not isinstance(name, str):
-        raise _damaged(path, 'the key "robot" must be a name')
-    if robot is not None and robot.name != name:
-        raise _damaged(path, f'it holds points of the robot "{name}", not of "{robot.name}"')
-    fingerprint = document.get("robot_fingerprint", "")
-    if not isinstance(fingerprint, str):
-        raise _damaged(path, 'the key "robot_fingerprint" must be text')
-    entries = document.get("points")
-    if not isinstance(entries, list):
-        raise _damaged(path, 'the key "points" must be a list')
-    joints = robot.joints if robot is not None else None
-    points: dict[str, _Point] = {}
-    for i, entry in enumerate(entries):
-        if not isinstance(entry, dict) or not isinstance(entry.get("name"), str):
-            raise _damaged(path, f'points[{i}] must have a "name" and "q"')
-        if entry["name"] in points:
-            raise _damaged(path, f'points[{i}] has the name "{entry["name"]}" a second time')
-        try:
-            joints = len(entry["q"]) if joints is None else joints
-            q = vector(entry["q"], f"points[{i}].q", joints)
-        except (BadArgumentError, KeyError, TypeError) as error:
-            reason = error.message if isinstance(error, BadArgumentError) else '"q" is missing'
-            raise _damaged(path, f"points[{i}]: {reason}") from None
-        try:
-            points[entry["name"]] = _Point(q, _frame_in(entry))
-        except (PoseError, BadArgumentError, KeyError, TypeError) as error:
-            reason = (
-                error.message
-                if isinstance(error, MotionError)
-                else '"frame" must have a "name" and a "pose"'
-            )
-            raise _damaged(path, f"points[{i}]: {reason}") from None
-    return name, fingerprint, points
-
-
-def _frame_in(entry: dict[str, Any]) -> Frame | None:
-    frame = entry.get("frame")
-    return None if frame is None else Frame(frame["pose"], frame["name"])
-
-
-def _damaged(path: Path, reason: str, line: int | None = None) -> BadProgramError:
-    return BadProgramError(
-        f"The point file cannot be read: {reason}.",
-        file=str(path),
-        line=line,
-        ways_out=["Mend the file by hand or move it away; it was left as it is."],
-    )

@@ -212,7 +212,80 @@ DAMAGES = {
     ),
     "twice": lambda text: text.replace('"name": "B"', '"name": "A"'),
     "a list": lambda text: "[]",
+    "version true": lambda text: text.replace('"version": 1', '"version": true'),
+    "points twice": lambda text: text.replace('"points":', '"points": [], "points":'),
+    "joints twice": lambda text: text.replace('"q":', '"q": [0, 0, 0, 0, 0, 0], "q":', 1),
+    "unknown key": lambda text: text.replace('"points":', '"foo": 1, "points":'),
+    "unknown key of a point": lambda text: text.replace('"q":', '"speed": 1, "q":', 1),
+    "unknown key of a frame": lambda text: with_first(
+        text, frame={"name": "t", "pose": np.eye(4).tolist(), "unit": "mm"}
+    ),
+    "true in a frame": lambda text: with_first(
+        text, frame={"name": "t", "pose": [[True, 0, 0, 0], *np.eye(4).tolist()[1:]]}
+    ),
+    "true for a number": lambda text: with_first(text, q=[True, 0, 0, 0, 0, 0.5]),
+    "a number of 5000 digits": lambda text: with_first(text, q=[7, 0, 0, 0, 0, 0]).replace(
+        "[7,", "[" + "7" * 5000 + ","
+    ),
+    "half a surrogate pair": lambda text: text.replace('"name": "A"', '"name": "\\ud800"'),
 }
+
+
+def with_first(text, **members):
+    document = json.loads(text)
+    document["points"][0].update(members)
+    return json.dumps(document)
+
+
+@pytest.mark.parametrize(
+    ("damage", "said"),
+    [
+        ("points twice", 'the key "points" is there twice'),
+        ("unknown key", 'unknown key "foo"; known are format, version'),
+        ("unknown key of a point", r'points\[0\]: unknown key "speed"; known are name, q, frame'),
+        ("unknown key of a frame", r'points\[0\]\.frame: unknown key "unit"'),
+        ("true for a number", r"points\[0\]: q must hold numbers only"),
+        ("a number of 5000 digits", "digits"),
+    ],
+)
+def test_what_would_be_ignored_or_misread_is_named(points, file, damage, said):
+    file.write_text(DAMAGES[damage](file.read_text(encoding="utf-8")), encoding="utf-8")
+    with pytest.raises(errors.BadProgramError, match=said) as caught:
+        vp.PointList(file)
+    assert caught.value.ways_out
+
+
+def test_a_name_that_is_no_text_is_refused_and_nothing_is_lost(points, file, abc):
+    with pytest.raises(errors.BadArgumentError, match="surrogate"):
+        points.record("\ud800", abc["A"])
+    assert list(vp.PointList(file)) == ["A", "B", "C"]
+
+
+def test_a_file_name_with_a_nul_is_refused(tmp_path, puma, abc):
+    precious = tmp_path / "a"
+    precious.write_text("precious", encoding="utf-8")
+    other = str(precious) + "\0b.json"
+    program = vp.Program(puma, start=abc["A"]).movej(abc["B"])
+    for attempt in (
+        lambda: vp.PointList(other, puma).record("A", abc["A"]),
+        lambda: program.save(other),
+        lambda: vp.Program.load(other),
+        lambda: vp.load_robot(other.replace("json", "yaml")),
+        lambda: puma.save(other.replace("json", "yaml")),
+    ):
+        with pytest.raises(errors.FileError, match="NUL"):
+            attempt()
+    assert precious.read_text(encoding="utf-8") == "precious"
+
+
+def test_a_point_outside_the_limits_in_the_file_can_be_taught_anew(points, file, abc):
+    text = with_first(file.read_text(encoding="utf-8"), q=[99.0, 0, 0, 0, 0, 0])
+    file.write_text(text, encoding="utf-8")
+    again = vp.PointList(file)
+    with pytest.raises(errors.JointLimitError, match='point "A": joint 1 is at 99'):
+        again.program()
+    again.record("A", abc["A"])
+    assert again.program().check() is not None
 
 
 @pytest.mark.parametrize("content", [b"\xff\xfe{}", b"[" * 100_000])
