@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <map>
-#include <tuple>
 #include <utility>
 
 #include "viapoint/core/scalar_minimum.hpp"
@@ -17,6 +15,7 @@ constexpr double kNearEnough = 0.35;  ///< a change of every joint below this is
 /// Parameters looked at, first few, then more where these found nothing.
 constexpr std::array kScans{16, 48};
 constexpr int kScan = 64;        ///< where the whole range counts
+constexpr int kSweep = 96;       ///< where every configuration is wanted
 constexpr int kFineScan = 1024;  ///< before a pose is given up
 constexpr int kRefinements = 8;
 constexpr double kResolution = 1e-4;  ///< of the stretch refined
@@ -30,7 +29,7 @@ constexpr double kCrowdingCost = 0.25;
 
 RedundantInverse::RedundantInverse(const ForwardKinematics& forward, const JointLimits& limits,
                                    std::unique_ptr<const RedundantForm> form)
-    : BranchInverse(forward, limits), form_(std::move(form)) {}
+    : BranchInverse(forward, limits), form_(std::move(form)), sweep_(forward, limits) {}
 
 Configuration RedundantInverse::sides(const JointVector& q) const {
   return configuration_of(form_->sides(q));
@@ -198,35 +197,24 @@ double RedundantInverse::least_missing(const InverseTask& task,
 std::vector<JointVector> RedundantInverse::all(const InverseTask& task,
                                                const JointVector& reference) const {
   if (task.position_only) return numerical_.all(task, reference);
-  std::map<std::tuple<int, int, int>, std::pair<double, JointVector>> roomiest;
   const auto [low, high] = form_->range(limits_);
-  for (const int count : {kScan, kFineScan}) {
-    for (int i = 0; i <= count; ++i) {
-      ClosedSolutions found;
-      form_->solve(task.goal, low + (high - low) * i / count, reference, found);
-      for (const ClosedBranch& branch : found.branches) {
-        const auto q = nearest(task, branch.q, reference);
-        if (!q) continue;
-        const Configuration side = configuration_of(branch.sides);
-        const auto key = std::tuple(side.shoulder, side.elbow, side.wrist);
-        const double room = margin(*q);
-        const auto known = roomiest.find(key);
-        if (known != roomiest.end() && known->second.first >= room) continue;
-        if (confirmed(task, *q)) roomiest[key] = {room, *q};
-      }
-    }
-    if (!roomiest.empty()) break;
+  const auto solve = [&](double parameter, ClosedSolutions& found) {
+    form_->solve(task.goal, parameter, reference, found);
+  };
+  const auto signs = [](const ArmSides& found) {
+    const Configuration side = configuration_of(found);
+    return std::array{side.shoulder, side.elbow, side.wrist};
+  };
+  const auto accept = [&](const JointVector& q) { return confirmed(task, q); };
+  std::vector<JointVector> solutions;
+  for (const int count : {kSweep, kFineScan}) {
+    solutions = sweep_.find(low, high, count, reference, solve, signs, accept);
+    if (!solutions.empty()) break;
   }
-  if (roomiest.empty()) {
+  if (solutions.empty()) {
     const double missing = least_missing(task, reference);
     if (missing > kPoseTolerance) refuse_unreachable("the wrist at this pose", missing);
     return numerical_.all(task, reference);
-  }
-  std::vector<JointVector> solutions;
-  for (const auto& [key, entry] : roomiest) {
-    for (const JointVector& q : turns_.all(entry.second, reference)) {
-      if (confirmed(task, q)) solutions.push_back(q);
-    }
   }
   std::sort(solutions.begin(), solutions.end(),
             [&](const auto& a, const auto& b) { return is_nearer(a, b, reference); });

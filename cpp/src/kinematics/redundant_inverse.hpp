@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "kinematics/branch_inverse.hpp"
+#include "kinematics/configuration_sweep.hpp"
 #include "kinematics/redundant_form.hpp"
 
 namespace viapoint {
@@ -55,6 +56,7 @@ class RedundantInverse final : public BranchInverse {
   [[nodiscard]] double margin(const JointVector& q) const;
 
   std::unique_ptr<const RedundantForm> form_;
+  ConfigurationSweep sweep_;
 };
 
 }  // namespace viapoint

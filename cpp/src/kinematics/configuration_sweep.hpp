@@ -1,0 +1,66 @@
+/// @file
+/// Every configuration that an arm of seven joints can hold a pose in.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "kinematics/closed_form.hpp"
+#include "viapoint/core/joint_limits.hpp"
+
+namespace viapoint {
+
+/// Walks the parameter that the pose leaves open, and follows each configuration (sides and turns)
+/// by its room: how far its worst joint is from leaving the limits or its turn, negative outside.
+/// Where a branch begins or ends between two of the places looked at, the end is bisected. A
+/// configuration that lives only between two places shows as a summit of its room below zero, and
+/// is climbed (Brent 1973). What it still misses is one whose branch exists nowhere but between two
+/// even places, or whose room has a summit there that neither of them shows.
+class ConfigurationSweep {
+ public:
+  using Solve = std::function<void(double parameter, ClosedSolutions& found)>;
+  using Sides = std::array<int, 3>;  ///< signs of shoulder, elbow and wrist
+  using Signs = std::function<Sides(const ArmSides&)>;
+  /// True where q, within the limits, is an answer.
+  using Accept = std::function<bool(const JointVector& q)>;
+
+  ConfigurationSweep(const ForwardKinematics& forward, const JointLimits& limits);
+
+  /// The roomiest answer of each configuration. @param count of places between `low` and `high`
+  [[nodiscard]] std::vector<JointVector> find(double low, double high, int count,
+                                              const JointVector& reference, const Solve& solve,
+                                              const Signs& signs, const Accept& accept) const;
+
+ private:
+  /// One turn of one joint, as far as it lies within the limits.
+  struct Window {
+    double middle = 0.0;
+    double half = 0.0;
+  };
+  /// Sides, and which window each joint is in.
+  using Key = std::pair<Sides, std::vector<int>>;
+  /// A branch on the turns of its key.
+  struct Place {
+    JointVector q;
+    double room = 0.0;    ///< to the limits and the turn's ends [rad]; negative outside
+    double margin = 0.0;  ///< to the limits, as a share of a joint's range
+  };
+  struct Track {
+    std::map<double, double> room;  ///< at each parameter where the branch exists [rad]
+    std::optional<Place> best;
+  };
+  /// Calls visit(key's turns, place) for each turn a branch may be on.
+  template <typename Visit>
+  void each_turn(const JointVector& branch, const JointVector& reference, Visit&& visit) const;
+  [[nodiscard]] Place place_of(const JointVector& branch, const JointVector& reference,
+                               const std::vector<int>& turns) const;
+
+  JointLimits limits_;
+  std::vector<std::vector<Window>> windows_;  ///< a joint; none where its limits are open
+  std::vector<bool> slides_;
+};
+
+}  // namespace viapoint
