@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <sstream>
 #include <string_view>
@@ -12,6 +13,7 @@ namespace {
 
 /// Beyond these, squares and cubes of what is given leave the range of doubles.
 constexpr double kMost = 1e30, kLeastLimit = 1e-30;
+constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
 std::string written(double value) {
   std::ostringstream text;
@@ -106,6 +108,14 @@ void require_limits(const StateRequest& r) {
     below("v_min", i, l.velocity_min);
     below("a_min", i, l.acceleration_min);
     below("j_min", i, l.jerk_min);
+    const auto nowhere = [&](const char* name, double value, const char* rule) {
+      refuse_joint(r, ErrorCode::kBadLimits, name, i, value, rule,
+                   {"Give a position, or leave out what is not limited."}, std::nullopt);
+    };
+    if (!(l.position_min < kUnlimited))
+      nowhere("p_min", l.position_min, "it must be a position, or -inf.");
+    if (!(l.position_max > -kUnlimited))
+      nowhere("p_max", l.position_max, "it must be a position, or inf.");
     if (!(l.position_min <= l.position_max)) {
       refuse_joint(r, ErrorCode::kBadLimits, "p_min", i, l.position_min,
                    "it must not be above p_max, which is " + written(l.position_max) + ".",
@@ -168,6 +178,23 @@ void require_end_within(const StateRequest& r, size_t i) {
                to.qd > 0.0 ? l.position_min : l.position_max);
 }
 
+/// The joint would have to wait, and cannot. @throws MotionError(kBadArgument) always
+[[noreturn]] void refuse_duration(const StateRequest& r, size_t i) {
+  const AxisState &from = r.start[i], &to = r.end[i];
+  const AxisLimits& l = r.limits[i];
+  const bool by_start = std::abs(from.qd) >= std::abs(to.qd);
+  refuse_joint(
+      r, ErrorCode::kBadArgument, by_start ? "v0" : "v1", i, by_start ? from.qd : to.qd,
+      "the joint is too fast to wait anywhere between p_min and p_max, " + written(l.position_min) +
+          " to " + written(l.position_max) + ", and no motion found from q0 = " + written(from.q) +
+          ", v0 = " + written(from.qd) + " to q1 = " + written(to.q) + ", v1 = " + written(to.qd) +
+          " lasts as long as the other joints, least_duration or cycle ask for.",
+      {"Start or end more slowly, or widen the limits of the position.",
+       "Use sync=\"none\", or leave out least_duration and cycle.",
+       "Raise the limits of the slower joints, or lower those of this one."},
+      std::nullopt);
+}
+
 [[noreturn]] void refuse_line(const StateRequest& r, size_t joint) {
   const AxisState &from = r.start[joint], &to = r.end[joint];
   Problem problem;
@@ -224,6 +251,9 @@ void refuse(const StateRequest& request, MoveStatus status, int culprit) {
   }
   if (status >= MoveStatus::kEndPosition && status <= MoveStatus::kNoRoom) {
     refuse_position(request, status, static_cast<size_t>(std::max(culprit, 0)));
+  }
+  if (status == MoveStatus::kDurationImpossible) {
+    refuse_duration(request, static_cast<size_t>(std::max(culprit, 0)));
   }
   if (culprit >= 0) require_end_within(request, static_cast<size_t>(culprit));
   for (size_t i = 0; i < request.joints; ++i) require_end_within(request, i);

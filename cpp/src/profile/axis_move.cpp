@@ -71,8 +71,8 @@ MoveStatus quickest_move(const AxisState& start, const AxisState& end, const Axi
                          AxisMove& move) noexcept VIAPOINT_NONBLOCKING {
   MoveProblem problem;
   const MoveStatus status = problem.solve(start, end, limits, move);
-  if (status == MoveStatus::kSolved) problem.append_quickest(move);
-  return status;
+  if (status != MoveStatus::kSolved) return status;
+  return problem.append_quickest(move) ? status : MoveStatus::kNoRoom;
 }
 
 MoveStatus quickest_velocity_change(const AxisState& start, const AxisState& end,

@@ -97,13 +97,14 @@ MoveStatus MoveProblem::solve_between_walls(const AxisState& start, const AxisLi
   return MoveStatus::kSolved;
 }
 
-void MoveProblem::append_quickest(AxisMove& move) const noexcept {
+bool MoveProblem::append_quickest(AxisMove& move) const noexcept {
   if (has_walls_ && between_.value.route.stops > 0) {
-    (void)append_route(between_.value.route, -1, 0.0, move);
+    if (!append_route(between_.value.route, -1, 0.0, move)) return false;
     move.total = duration_;
   } else {
     free_.append_quickest(move);
   }
+  return true;
 }
 
 bool MoveProblem::append_route(const Route& route, int stretched, double more,
@@ -138,9 +139,12 @@ const Route& MoveProblem::calm() noexcept {
   if (!between_.value.has_calm) {
     RouteSearch search(between_.value.from, between_.value.to, between_.value.limits,
                        between_.value.walls);
-    (void)
-        search.admit();  // the walls may have to give way to rounding; that there is a way is known
-    between_.value.calm = search.calm();
+    // The walls may have to give way to rounding.
+    if (search.admit() == MoveStatus::kSolved) {
+      between_.value.calm = search.calm();
+    } else {
+      between_.value.calm.duration = kNone;
+    }
   }
   between_.value.has_calm = true;
   return between_.value.calm;
@@ -205,12 +209,10 @@ double MoveProblem::next_duration(double duration, const AxisMove& begun) noexce
   return good;
 }
 
-void MoveProblem::append_lasting(double duration, AxisMove& move) noexcept {
-  if (!has_walls_ || free_.is_rest_to_rest()) {
-    free_.append_lasting(duration, move);
-  } else {
-    (void)find_lasting(duration, move);
-  }
+bool MoveProblem::append_lasting(double duration, AxisMove& move) noexcept {
+  if (has_walls_ && !free_.is_rest_to_rest()) return find_lasting(duration, move);
+  free_.append_lasting(duration, move);
+  return true;
 }
 
 }  // namespace viapoint

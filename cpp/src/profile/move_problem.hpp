@@ -20,14 +20,15 @@ class MoveProblem {
                                  const AxisLimits& limits, AxisMove& move) noexcept;
   /// Of the quickest, counted from the start [s]. The rest: @pre solve() returned kSolved
   [[nodiscard]] double duration() const noexcept { return duration_; }
-  /// `move` is the one solve() has begun.
-  void append_quickest(AxisMove& move) const noexcept;
+  /// `move` is the one solve() has begun. Both return false, with `move` unfit for use, where the
+  /// way between the walls has more phases than a move holds.
+  [[nodiscard]] bool append_quickest(AxisMove& move) const noexcept;
   /// A duration not under `duration` that some motion has, counted from the start: the shortest
   /// where no position limit comes in the way.
   /// @pre `duration` not under that of the quickest
   [[nodiscard]] double next_duration(double duration, const AxisMove& begun) noexcept;
   /// A motion that lasts `duration`. @pre next_duration returned it
-  void append_lasting(double duration, AxisMove& move) noexcept;
+  [[nodiscard]] bool append_lasting(double duration, AxisMove& move) noexcept;
 
  private:
   [[nodiscard]] MoveStatus solve_between_walls(const AxisState& start, const AxisLimits& limits,

@@ -12,10 +12,12 @@ namespace {
 
 /// Share of a state by which it may leave the line through rounding.
 constexpr double kLineSlack = 1e-9;
-/// Share of a position by which it may be beyond a limit through rounding.
+/// Share of a position by which it may be beyond a limit, or off its place, through rounding.
 constexpr double kPositionSlack = 1e-15;
 /// Share of a cycle by which a duration may be over a whole number of them.
 constexpr double kCycleSlack = 1e-9;
+/// From here on a duration's last digit is more than a cycle.
+constexpr double kMostCycles = 1e15;
 
 /// A problem that is made only where there is an axis.
 union Place {
@@ -28,6 +30,7 @@ double rounded_up(double duration, const StateToStateOptions& options) noexcept 
   const double least = std::max(duration, options.least_duration);
   if (!(options.cycle > 0.0)) return least;
   const double cycles = least / options.cycle;
+  if (!(cycles < kMostCycles)) return least;
   const double whole = std::round(cycles);
   if (cycles <= whole + kCycleSlack) return std::max(whole * options.cycle, least);
   return std::max(std::ceil(cycles) * options.cycle, least);
@@ -36,8 +39,9 @@ double rounded_up(double duration, const StateToStateOptions& options) noexcept 
 /// The least duration from `duration` on that is a whole number of cycles and that every axis has a
 /// motion of. Infinite where there is none within as many rounds as there can be intervals.
 /// @param begun what each problem's solve() has begun
+/// @param culprit the last axis that had no motion of a duration
 double common_duration(std::span<Place> problems, std::span<const AxisMove> begun, double duration,
-                       const StateToStateOptions& options) noexcept {
+                       const StateToStateOptions& options, size_t& culprit) noexcept {
   double common = rounded_up(duration, options);
   // Every axis has at most three intervals of durations it cannot have, and one more that is passed
   // over at position limits; the end of that one may lie in a gap between two cycles again.
@@ -45,13 +49,25 @@ double common_duration(std::span<Place> problems, std::span<const AxisMove> begu
   for (size_t round = 0; round < rounds; ++round) {
     double next = common;
     for (size_t i = 0; i < problems.size(); ++i) {
-      next = std::max(next, problems[i].problem.next_duration(next, begun[i]));
+      const double own = problems[i].problem.next_duration(next, begun[i]);
+      if (own > next) culprit = i;
+      next = std::max(next, own);
       if (!std::isfinite(next)) return next;
     }
     if (next == common) return common;
     common = rounded_up(next, options);
   }
   return std::numeric_limits<double>::infinity();
+}
+
+/// The motion of that duration, the quickest included, appended.
+MoveStatus append_lasting(MoveProblem& problem, double duration, AxisMove& move) noexcept {
+  if (!std::isfinite(duration)) return MoveStatus::kDurationImpossible;
+  if (duration == problem.duration()) {
+    return problem.append_quickest(move) ? MoveStatus::kSolved : MoveStatus::kNoRoom;
+  }
+  return problem.append_lasting(duration, move) ? MoveStatus::kSolved
+                                                : MoveStatus::kDurationImpossible;
 }
 
 bool is_sound(const StateToStateOptions& options) noexcept {
@@ -101,18 +117,22 @@ MoveStatus StateToState::plan_apart(std::span<const AxisState> start,
   const bool together = options.synchronization == Synchronization::kTime;
   if (together) {
     const double longest = *std::max_element(least.begin(), least.begin() + static_cast<long>(n));
-    duration_ = common_duration({problems.data(), n}, axes_, longest, options);
-    if (!std::isfinite(duration_)) return MoveStatus::kDurationImpossible;
+    size_t culprit = 0;
+    duration_ = common_duration({problems.data(), n}, axes_, longest, options, culprit);
+    if (!std::isfinite(duration_)) {
+      culprit_ = static_cast<int>(culprit);
+      return MoveStatus::kDurationImpossible;
+    }
   }
   for (size_t i = 0; i < n; ++i) {
-    const double own = together
-                           ? duration_
-                           : common_duration({&problems[i], 1}, {&axes_[i], 1}, least[i], options);
-    if (!std::isfinite(own)) return MoveStatus::kDurationImpossible;
-    if (own == least[i]) {
-      problems[i].problem.append_quickest(axes_[i]);
-    } else {
-      problems[i].problem.append_lasting(own, axes_[i]);
+    size_t alone = 0;
+    const double own =
+        together ? duration_
+                 : common_duration({&problems[i], 1}, {&axes_[i], 1}, least[i], options, alone);
+    const MoveStatus status = append_lasting(problems[i].problem, own, axes_[i]);
+    if (status != MoveStatus::kSolved) {
+      culprit_ = static_cast<int>(i);
+      return status;
     }
     duration_ = std::max(duration_, own);
   }
@@ -148,6 +168,49 @@ double multiple_of(const std::array<double, kMaxJoints>& direction,
   return factor;
 }
 
+/// What two positions lose when one is taken from the other.
+double position_rounding(const AxisState& start, const AxisState& end) noexcept {
+  return kPositionSlack * (std::abs(start.q) + std::abs(end.q));
+}
+
+/// Least distance in which a state's velocity and acceleration can be brought to zero.
+double stopping_way(const AxisState& s, const AxisLimits& l) noexcept {
+  const double push = std::max(l.acceleration_max, -l.acceleration_min);
+  const double jerk = std::max(l.jerk_max, -l.jerk_min);
+  return 0.5 * s.qd * s.qd / push + std::abs(s.qdd * s.qdd * s.qdd) / (6.0 * jerk * jerk);
+}
+
+/// Whether any axis ends elsewhere than it starts by more than rounding, that of the positions and
+/// that of the way it takes to turn what moves: 0.1 + 0.2 is no direction away from 0.3.
+bool goes_somewhere(std::span<const AxisState> start, std::span<const AxisState> end,
+                    std::span<const AxisLimits> limits) noexcept {
+  double reach = 0.0;
+  for (size_t i = 0; i < start.size(); ++i) {
+    reach = std::max({reach, stopping_way(start[i], limits[i]), stopping_way(end[i], limits[i])});
+  }
+  for (size_t i = 0; i < start.size(); ++i) {
+    const double none = position_rounding(start[i], end[i]) + kLineSlack * reach;
+    if (!(std::abs(end[i].q - start[i].q) <= none)) return true;
+  }
+  return false;
+}
+
+/// Moves the end by what it is beside the line, in the velocity of the longest phase, where that is
+/// rounding. Nothing moves where there are no phases: the end is then the start.
+void bend(double beside, AxisMove& move) noexcept {
+  if (move.phases == 0) {
+    move.end.q -= beside;
+    return;
+  }
+  const auto count = static_cast<size_t>(move.phases);
+  size_t longest = 0;
+  for (size_t k = 1; k < count; ++k) {
+    if (move.phase[k].duration > move.phase[longest].duration) longest = k;
+  }
+  move.phase[longest].from.qd += beside / move.phase[longest].duration;
+  for (size_t k = longest + 1; k < count; ++k) move.phase[k].from.q += beside;
+}
+
 /// Tightens `low <= factor <= high` by minimum <= factor · direction <= maximum.
 void tighten(double direction, double minimum, double maximum, double& low, double& high) noexcept {
   const double a = minimum / direction, b = maximum / direction;
@@ -170,11 +233,13 @@ MoveStatus StateToState::plan_line(std::span<const AxisState> start, std::span<c
       largest = std::max(largest, std::abs(line.direction[i]));
     }
   };
-  take([&](size_t i) { return end[i].q - start[i].q; });
+  const auto way = [&](size_t i) { return end[i].q - start[i].q; };
+  if (goes_somewhere(start, end, limits)) take(way);
   take([&](size_t i) { return start[i].qd; });
   take([&](size_t i) { return end[i].qd; });
   take([&](size_t i) { return start[i].qdd; });
   take([&](size_t i) { return end[i].qdd; });
+  take(way);  // from rest to rest it counts, however short
   if (!std::isfinite(largest)) return MoveStatus::kBadState;
   if (largest == 0.0) return plan_apart(start, end, limits, options);
   for (double& component : line.direction) component /= largest;
@@ -224,18 +289,15 @@ MoveStatus StateToState::plan_line(std::span<const AxisState> start, std::span<c
   AxisMove law;
   Place place;
   MoveProblem& problem = *std::construct_at(&place.problem);
-  const MoveStatus status = problem.solve(line.start, line.end, line.limits, law);
+  MoveStatus status = problem.solve(line.start, line.end, line.limits, law);
+  if (status == MoveStatus::kSolved) {
+    size_t alone = 0;
+    duration_ = common_duration({&place, 1}, {&law, 1}, problem.duration(), options, alone);
+    status = append_lasting(problem, duration_, law);
+  }
   if (status != MoveStatus::kSolved) {
     culprit_ = static_cast<int>(leader);
     return status;
-  }
-  const double quickest = problem.duration();
-  duration_ = common_duration({&place, 1}, {&law, 1}, quickest, options);
-  if (!std::isfinite(duration_)) return MoveStatus::kDurationImpossible;
-  if (duration_ == quickest) {
-    problem.append_quickest(law);
-  } else {
-    problem.append_lasting(duration_, law);
   }
   for (size_t i = 0; i < n; ++i) {
     const double d = line.direction[i];
@@ -249,6 +311,8 @@ MoveStatus StateToState::plan_line(std::span<const AxisState> start, std::span<c
       move.phase[k] = {law.phase[k].duration, scaled(law.phase[k].from)};
     }
     move.end = {end[i].q, end[i].qd, end[i].qdd, 0.0};
+    const double beside = end[i].q - (start[i].q + d * line.end.q);
+    if (std::abs(beside) > position_rounding(start[i], end[i])) bend(beside, move);
   }
   return MoveStatus::kSolved;
 }
