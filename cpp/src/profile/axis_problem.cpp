@@ -72,7 +72,7 @@ MoveStatus AxisProblem::set(const AxisState& start, const AxisState& end, const 
   if (!is_finite(start) || !is_finite(end) || !std::isfinite(end.q - start.q))
     return MoveStatus::kBadState;
   limits_ = limits;
-  has_up_ = has_down_ = is_closed_ = false;
+  has_up_ = has_down_ = false;
   lasting_ = -1.0;
   target_q_ = end.q;
   position_rounding_ = kPositionRounding * (std::abs(start.q) + std::abs(end.q));
@@ -166,9 +166,10 @@ void AxisProblem::append_velocity_change(AxisMove& move) noexcept {
 }
 
 double AxisProblem::solve_quickest() noexcept {
-  if (rests_ && std::abs(to_.q) > position_rounding_) {
-    is_closed_ = rest_motion_.solve(std::abs(to_.q), limits_of(to_.q > 0.0));
-    if (is_closed_) return quickest_.duration = rest_motion_.duration();
+  if (rests_) {
+    stays_ = std::abs(to_.q) <= position_rounding_;
+    if (!stays_) rest_motion_.solve(std::abs(to_.q), limits_of(to_.q > 0.0));
+    return quickest_.duration = stays_ ? 0.0 : rest_motion_.duration();
   }
   bool upward = to_.q > 0.0;  // a guess that is mostly right and saves the other family
   const auto family = [this](bool up) -> const UpwardFamily& {
@@ -195,8 +196,8 @@ double AxisProblem::solve_quickest() noexcept {
 }
 
 void AxisProblem::append_quickest(AxisMove& move) const noexcept {
-  if (is_closed_) {
-    rest_motion_.write(from_.q, target_q_, to_.q > 0.0 ? 1.0 : -1.0, 1.0, move);
+  if (rests_) {
+    append_slowed(quickest_.duration, move);
     return;
   }
   append(chain_of(quickest_is_upward_, quickest_), move);
@@ -261,23 +262,13 @@ void AxisProblem::append_lasting(double duration, AxisMove& move) noexcept {
   move.total = duration;
 }
 
-/// The quickest motion in slow motion: lower rates only.
+/// The quickest motion from rest to rest in slow motion: lower rates only.
 void AxisProblem::append_slowed(double duration, AxisMove& move) const noexcept {
-  if (is_closed_) {
+  if (stays_) {
+    move.append(0.0, duration);
+  } else {
     rest_motion_.write(from_.q, target_q_, to_.q > 0.0 ? 1.0 : -1.0, duration / quickest_.duration,
                        move);
-    move.total = duration;
-    return;
-  }
-  append_quickest(move);
-  if (move.phases == 0) move.append(0.0, duration);
-  const double rate = quickest_.duration / duration;
-  for (int i = 0; i < move.phases; ++i) {
-    auto& [seconds, from] = move.phase[static_cast<size_t>(i)];
-    if (quickest_.duration > 0.0) seconds /= rate;
-    from.qd *= rate;
-    from.qdd *= rate * rate;
-    from.qddd *= rate * rate * rate;
   }
   move.end = {target_q_, 0.0, 0.0, 0.0};
   move.total = duration;

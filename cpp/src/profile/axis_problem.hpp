@@ -48,9 +48,9 @@ class AxisProblem {
   double target_q_;
   double position_rounding_;
   double brake_time_;
-  bool rests_;      ///< at the start and at the end
-  bool is_closed_;  ///< the quickest is `rest_motion_`, of which `quickest_` has the duration only
-  RestMotion rest_motion_;
+  bool rests_;  ///< at the start and at the end: then all is in the next two
+  bool stays_;
+  RestMotion rest_motion_;  ///< `quickest_` has its duration only
   UpwardFamily up_, down_;
   bool has_up_, has_down_;
   UpwardMember quickest_;

@@ -4,6 +4,13 @@
 #include <cmath>
 
 namespace viapoint {
+namespace {
+
+/// Newton's steps converge in a handful.
+constexpr int kMostSteps = 100;
+constexpr double kConverged = 4e-16;
+
+}  // namespace
 
 /// Where a side is at the ends of its phases, seen from rest.
 struct RestMotion::Course {
@@ -22,60 +29,76 @@ struct RestMotion::Course {
   }
 };
 
-double RestMotion::free_length(double top, double peak) const noexcept {
-  return top * peak * (per_up_ + 2.0 * per_down_) * (2.0 / 3.0);
+RestMotion::Side RestMotion::side(double top, double cap) const noexcept {
+  if (top > half_ * cap * cap) return {cap, top / cap - half_ * cap};
+  return {std::sqrt(top / half_), 0.0};
 }
 
-void RestMotion::set_held(double top) noexcept {
-  top_ = top;
-  rise_ = {limits_.rise, std::max(0.0, top / limits_.rise - half_ * limits_.rise)};
-  fall_ = {limits_.fall, std::max(0.0, top / limits_.fall - half_ * limits_.fall)};
+double RestMotion::length(double top, double cap) const noexcept {
+  if (top > half_ * cap * cap) {
+    return 0.5 * top * (top / cap + per_down_ * cap) +
+           half_ * (per_up_ - per_down_) * cap * cap * cap * (1.0 / 12.0);
+  }
+  return top * std::sqrt(top / half_) * (per_up_ + 2.0 * per_down_) * (1.0 / 3.0);
 }
 
-bool RestMotion::solve(double distance, const UpwardLimits& limits) noexcept {
+/// Both sides hold: square · u² + linear · u + constant = distance.
+double RestMotion::top_of_both(double distance) const noexcept {
+  const double a = limits_.rise, b = limits_.fall;
+  const double square = 0.5 * (a + b) / (a * b);
+  const double linear = 0.5 * per_down_ * (a + b);
+  const double constant = half_ * (per_up_ - per_down_) * (a * a * a + b * b * b) * (1.0 / 12.0);
+  const double rest = distance - constant;
+  return 2.0 * rest / (linear + std::sqrt(linear * linear + 4.0 * square * rest));
+}
+
+/// One side holds `cap`: a quartic in the other's peak, which rises and is convex, so that Newton's
+/// steps come down to the root from above.
+double RestMotion::top_of_one(double distance, double cap, double highest) const noexcept {
+  const double c4 = 0.5 * half_ * half_ / cap;
+  const double c3 = half_ * (per_up_ + 2.0 * per_down_) * (1.0 / 3.0);
+  const double c2 = 0.5 * half_ * per_down_ * cap;
+  const double rest = distance - half_ * (per_up_ - per_down_) * cap * cap * cap * (1.0 / 12.0);
+  double x = std::sqrt(highest / half_);
+  for (int step = 0; step < kMostSteps; ++step) {
+    const double error = x * x * (c2 + x * (c3 + x * c4)) - rest;
+    const double slope = x * (2.0 * c2 + x * (3.0 * c3 + x * 4.0 * c4));
+    if (!(error > 0.0)) break;
+    const double change = error / slope;
+    x -= change;
+    if (change <= kConverged * x) break;
+  }
+  return half_ * x * x;
+}
+
+void RestMotion::solve(double distance, const UpwardLimits& limits) noexcept {
   limits_ = limits;
   per_up_ = 1.0 / limits.jerk_up;
   per_down_ = 1.0 / limits.jerk_down;
   half_ = 0.5 * (per_up_ + per_down_);
   cruise_ = 0.0;
-  const double a = limits.rise, b = limits.fall, v = limits.velocity;
-  const double least = std::min(a, b), most = std::max(a, b);
+  const double v = limits.velocity;
+  const double least = std::min(limits.rise, limits.fall);
+  const double most = std::max(limits.rise, limits.fall);
   // Velocities from which on one side holds, and both.
   const double one = half_ * least * least, both = half_ * most * most;
-
-  // What both sides cover while both hold is square · u² + linear · u + constant.
-  const double square = 0.5 * (a + b) / (a * b);
-  const double linear = 0.5 * per_down_ * (a + b);
-  const double constant = half_ * (per_up_ - per_down_) * (a * a * a + b * b * b) * (1.0 / 12.0);
-  const auto held_length = [&](double u) { return u * (square * u + linear) + constant; };
-  if (v >= both && held_length(both) <= distance) {
-    const double ramps = held_length(v);
-    if (ramps <= distance) {
-      set_held(v);
-      cruise_ = (distance - ramps) / v;
-    } else {
-      const double rest = distance - constant;
-      set_held(2.0 * rest / (linear + std::sqrt(linear * linear + 4.0 * square * rest)));
-    }
+  const auto whole = [&](double top) { return length(top, least) + length(top, most); };
+  const double ramps = whole(v);
+  if (ramps <= distance) {
+    top_ = v;
+    cruise_ = (distance - ramps) / v;
+  } else if (v > both && whole(both) <= distance) {
+    top_ = top_of_both(distance);
+  } else if (v > one && whole(one) <= distance) {
+    top_ = top_of_one(distance, least, std::min(v, both));
   } else {
-    const double top = std::min(v, one);
-    const double peak = std::sqrt(top / half_);
-    const double ramps = free_length(top, peak);
-    if (ramps > distance) {
-      // 2 H (1/j_up + 2/j_down)/3 x³ = distance
-      const double cubed = distance / (half_ * (per_up_ + 2.0 * per_down_) * (2.0 / 3.0));
-      rise_ = fall_ = {std::cbrt(cubed), 0.0};
-      top_ = half_ * rise_.peak * rise_.peak;
-    } else if (v <= one) {
-      rise_ = fall_ = {peak, 0.0};
-      top_ = v;
-      cruise_ = (distance - ramps) / v;
-    } else {
-      return false;
-    }
+    // 2 H (1/j_up + 2/j_down)/3 x³ = distance
+    const double peak = std::cbrt(distance / (half_ * (per_up_ + 2.0 * per_down_) * (2.0 / 3.0)));
+    top_ = half_ * peak * peak;
   }
+  rise_ = side(top_, limits.rise);
+  fall_ = side(top_, limits.fall);
   duration_ = 2.0 * half_ * (rise_.peak + fall_.peak) + rise_.hold + fall_.hold + cruise_;
-  return true;
 }
 
 void RestMotion::write(double from, double to, double sign, double stretch,
@@ -94,7 +117,7 @@ void RestMotion::write(double from, double to, double sign, double stretch,
   const double up = sign * rise_.peak, down = -sign * fall_.peak;
   put(rise.rise_time, from, 0.0, 0.0, rising);
   put(rise_.hold, from + sign * rise.rise_way, rise.rise_velocity, up, 0.0);
-  put(cruises ? rise.fall_time : rise.fall_time + fall.fall_time, from + sign * rise.hold_way,
+  put(cruises ? rise.fall_time : (rise_.peak + fall_.peak) * per_down_, from + sign * rise.hold_way,
       rise.velocity, up, falling);
   put(cruise_, from + sign * rise.way, top_, 0.0, 0.0);
   put(cruises ? fall.fall_time : 0.0, to - sign * fall.way, top_, 0.0, falling);

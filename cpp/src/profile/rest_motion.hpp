@@ -1,12 +1,12 @@
 /// @file
-/// The quickest motion from rest to rest, in closed form.
+/// The quickest motion from rest to rest.
 ///
 /// With H = (1/j_up + 1/j_down)/2 as in the upward family, of which it is a member, a side that
 /// reaches the top velocity u without holding its acceleration peaks at √(u/H) and covers
 /// u √(u/H) (1/j_up + 2/j_down)/3; one that holds its limit c (where u > H c²) covers
 /// u²/2c + u c/2j_down + H c³ (1/j_up − 1/j_down)/12. Both sides together cover the distance, or
-/// what is left is a cruise at the velocity limit: a cube root or a quadratic for u. Where only one
-/// side holds it is a quartic, which is left to the family.
+/// what is left is a cruise at the velocity limit: for u a cube root, a quadratic, or, where only
+/// one side holds, the one root of a quartic.
 #pragma once
 
 #include "profile/upward_family.hpp"
@@ -20,12 +20,11 @@ class RestMotion {
   // NOLINTNEXTLINE(modernize-use-equals-default): that would have it filled with zeros first
   RestMotion() noexcept {}
 
-  /// @return false where exactly one of both acceleration limits is reached
   /// @pre distance > 0
-  [[nodiscard]] bool solve(double distance, const UpwardLimits& limits) noexcept;
+  void solve(double distance, const UpwardLimits& limits) noexcept;
   [[nodiscard]] double duration() const noexcept { return duration_; }
   /// Writes the motion from `from` to `to`, up (`sign` 1) or down (−1), in that many times its
-  /// duration. @pre solve() returned true
+  /// duration. @pre solved
   void write(double from, double to, double sign, double stretch, AxisMove& move) const noexcept;
 
  private:
@@ -35,8 +34,11 @@ class RestMotion {
   };
   struct Course;
 
-  [[nodiscard]] double free_length(double top, double peak) const noexcept;
-  void set_held(double top) noexcept;
+  /// How a side with that limit of acceleration gets to the top velocity, and how far.
+  [[nodiscard]] Side side(double top, double cap) const noexcept;
+  [[nodiscard]] double length(double top, double cap) const noexcept;
+  [[nodiscard]] double top_of_both(double distance) const noexcept;
+  [[nodiscard]] double top_of_one(double distance, double cap, double highest) const noexcept;
 
   UpwardLimits limits_;
   double per_up_, per_down_, half_;  ///< 1/jerk, H
