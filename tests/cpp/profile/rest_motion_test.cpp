@@ -1,5 +1,5 @@
-// From rest to rest there are formulas of their own: what they give has to be the motion that the general
-// solver finds, whatever the limits.
+// From rest to rest there are formulas of their own: what they give has to be the motion that the
+// general solver finds, whatever the limits.
 #include <gtest/gtest.h>
 
 #include <array>
