@@ -22,6 +22,18 @@ namespace {
 /// How long a signal may wait until it is looked for [s].
 constexpr double kSignalPeriod = 0.02;
 
+void check_start(const MotionProgram& program, const RobotModel& robot, const std::string& path) {
+  if (program.start.size() == robot.joints()) return;
+  Problem problem;
+  problem.code = ErrorCode::kBadProgram;
+  problem.file = path;
+  problem.message = "the start has " + std::to_string(program.start.size()) + " values, \"" +
+                    robot.name() + "\" has " + std::to_string(robot.joints()) + " joints";
+  problem.ways_out = {"give \"start\" one value a joint",
+                      "run it with the description of the robot it was written for"};
+  throw MotionError(std::move(problem));
+}
+
 void check_fingerprint(const MotionProgram& program, const RobotModel& robot,
                        const std::string& path) {
   if (program.robot_fingerprint.empty() || program.robot_fingerprint == robot.fingerprint()) {
@@ -98,6 +110,7 @@ int run_program(const Options& options, std::ostream& out) {
   const RobotPtr robot = RobotModel::make(load_description(options.robot));
   const MotionProgram program = load_program(options.program);
   check_fingerprint(program, *robot, options.program);
+  check_start(program, *robot, options.program);
   const auto trajectory = std::make_shared<const Trajectory>(plan(robot, program));
 
   StopSignals signals;

@@ -101,18 +101,26 @@ def number(
     of_unit = f" {unit}" if unit else ""
     allowed = []
     if above > -math.inf:
-        allowed.append(f"above {above:g}{of_unit}")
+        allowed.append(f"above {shown(above)}{of_unit}")
     if least > -math.inf:
-        allowed.append(f"at least {least:g}{of_unit}")
+        allowed.append(f"at least {shown(least)}{of_unit}")
     if most < math.inf:
-        allowed.append(f"at most {most:g}{of_unit}")
+        allowed.append(f"at most {shown(most)}{of_unit}")
     what = "it must be a finite number" + (", " + " and ".join(allowed) if allowed else "")
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, numbers.Real):
         raise BadArgumentError(f"{name} is {_short(value)}; {what}.")
-    result = float(value)
+    try:
+        result = float(value)
+    except OverflowError:  # an integer of hundreds of digits
+        raise BadArgumentError(f"{name} is {_short(value)}{of_unit}; {what}.") from None
     if not math.isfinite(result) or result <= above or result < least or result > most:
-        raise BadArgumentError(f"{name} is {result:g}{of_unit}; {what}.")
+        raise BadArgumentError(f"{name} is {shown(result)}{of_unit}; {what}.")
     return result
+
+
+def shown(value: float) -> str:
+    """Return the shortest text that reads back to `value`: what differs never looks alike."""
+    return repr(float(value)).removesuffix(".0")
 
 
 def integer(value: object, name: str, least: int, most: int) -> int:
@@ -128,7 +136,7 @@ def integer(value: object, name: str, least: int, most: int) -> int:
             f"{name} is {_short(value)}; it must be an integer from {least} to {most}."
         )
     if not least <= int(value) <= most:
-        raise BadArgumentError(f"{name} is {value}; it must be from {least} to {most}.")
+        raise BadArgumentError(f"{name} is {_short(value)}; it must be from {least} to {most}.")
     return int(value)
 
 
@@ -173,5 +181,8 @@ def writing(path: str | os.PathLike[str]) -> Iterator[None]:
 
 
 def _short(value: object) -> str:
-    text = repr(value)
+    try:
+        text = repr(value)
+    except ValueError:  # Python does not write integers of thousands of digits
+        text = f"a {type(value).__name__} too long to write"
     return text if len(text) <= 60 else text[:57] + "..."

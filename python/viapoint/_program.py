@@ -358,6 +358,12 @@ class Program(CurveSteps):
                     "Pass the robot it was written for: Program.load(path, robot), or --robot FILE."
                 ],
             )
+        if len(core.start) != arm.joints:
+            raise BadProgramError(
+                f'The start has {len(core.start)} values; "{arm.name}" has {arm.joints} joints.',
+                file=name,
+                ways_out=['Give "start" one value a joint.', "Pass the robot it was written for."],
+            )
         program = cls(arm, start=core.start, name=Path(name).stem)
         program._core = core
         return program

@@ -8,7 +8,7 @@ from typing import cast
 import numpy as np
 
 from . import _core
-from ._arguments import ArrayLike, Vector, numbers_of, pose, vector
+from ._arguments import ArrayLike, Vector, numbers_of, pose, shown, vector
 from ._kinematics import Kinematics
 from .errors import (
     BadArgumentError,
@@ -238,8 +238,8 @@ def require_within_limits(robot: Robot, q: Vector, name: str, ways_out: list[str
         low, high = limits.position_min[joint], limits.position_max[joint]
         if not low - _SLACK <= value <= high + _SLACK:
             raise JointLimitError(
-                f"{name}: joint {joint + 1} is at {value:.6g}; it may be from {low:.6g} to "
-                f"{high:.6g} [rad or m].",
+                f"{name}: joint {joint + 1} is at {shown(value)}; it may be from {shown(low)} "
+                f"to {shown(high)} [rad or m].",
                 joint=joint,
                 value=float(value),
                 limit=float(low if value < low else high),

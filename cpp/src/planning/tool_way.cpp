@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "viapoint/core/number_text.hpp"
 #include "viapoint/core/units.hpp"
 
 namespace viapoint::planning {
@@ -65,9 +66,10 @@ std::unique_ptr<const OrientationCurve> turn_by_way_of(const Pose& from, const P
   problem.limit =
       value > limits.coupling_upper[row] ? limits.coupling_upper[row] : limits.coupling_lower[row];
   problem.message = std::string(what) + ": coupled limit " + std::to_string(row + 1) +
-                    " (row of C q) is " + std::to_string(value) + "; allowed is " +
-                    std::to_string(limits.coupling_lower[row]) + " to " +
-                    std::to_string(limits.coupling_upper[row]);
+                    " (row of C q) is " + number_text(value) + "; allowed is " +
+                    number_text(limits.coupling_lower[row]) + " to " +
+                    number_text(limits.coupling_upper[row]);
+  problem.ways_out = {"choose joints that keep C q within the bounds of that row"};
   throw MotionError(std::move(problem));
 }
 

@@ -11,6 +11,7 @@
 #include "realtime/loop_job.hpp"
 #include "realtime/realtime_rights.hpp"
 #include "viapoint/core/error.hpp"
+#include "viapoint/core/number_text.hpp"
 
 namespace viapoint {
 namespace {
@@ -244,7 +245,8 @@ std::string ControllerLoop::jog_block() const {
 void ControllerLoop::set_override(double share) {
   if (!(share >= 0.0 && share <= 1.0)) {
     throw MotionError(ErrorCode::kBadArgument,
-                      "the override is " + std::to_string(share) + "; it must lie in [0, 1]");
+                      "the override is " + number_text(share) + "; it must lie in [0, 1]",
+                      {"give a share of the programmed speed, e.g. 0.5"});
   }
   impl_->channels.override_share.store(share, std::memory_order_relaxed);
 }

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "viapoint/core/error.hpp"
+#include "viapoint/core/number_text.hpp"
 #include "viapoint/realtime/controller_loop.hpp"
 #include "viapoint/realtime/interpolator.hpp"
 
@@ -36,8 +37,7 @@ void require_positive(std::chrono::nanoseconds cycle) {
 
 void check_time(const char* what, double time) {
   if (std::isfinite(time) && time >= 0.0) return;
-  throw MotionError(ErrorCode::kBadArgument, std::string(what) + " time is " +
-                                                 std::to_string(time) +
+  throw MotionError(ErrorCode::kBadArgument, std::string(what) + " time is " + number_text(time) +
                                                  " s; it must be finite and not negative");
 }
 
@@ -45,7 +45,7 @@ void check(const TimedCommand& command) {
   check_time("a command's", command.time);
   if (command.kind == TimedCommand::Kind::kOverride &&
       !(command.value >= 0.0 && command.value <= 1.0)) {
-    throw MotionError(ErrorCode::kBadArgument, "an override of " + std::to_string(command.value) +
+    throw MotionError(ErrorCode::kBadArgument, "an override of " + number_text(command.value) +
                                                    " was given; it must lie in [0, 1]");
   }
 }
@@ -130,8 +130,8 @@ void admit_jog(const JointVector& velocity, const JointLimits& limits) {
     Problem problem;
     problem.code = ErrorCode::kVelocityLimit;
     problem.message = "the jog asks joint " + std::to_string(i + 1) + " for " +
-                      std::to_string(velocity[i]) + " rad/s or m/s; its limit is " +
-                      std::to_string(limits.velocity[i]);
+                      number_text(velocity[i]) + " rad/s or m/s; its limit is " +
+                      number_text(limits.velocity[i]);
     problem.ways_out = {"jog slower"};
     problem.joint = i;
     problem.value = velocity[i];

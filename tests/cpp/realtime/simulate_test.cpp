@@ -103,6 +103,12 @@ std::string refusal(const Motion& motion, std::vector<TimedCommand> commands,
   return message;
 }
 
+TEST(Simulate, TellsAnOverrideJustAboveItsBoundApartFromIt) {
+  const Motion motion = motion_of(5);
+  EXPECT_THAT(refusal(motion, {{0.0, Kind::kOverride, 1.0000001}}, kCycle),
+              testing::HasSubstr("1.0000001"));
+}
+
 TEST(Simulate, RefusesRunsLongerThanItsLogBeforeItFillsIt) {
   using testing::HasSubstr;
   const Motion motion = motion_of(6);

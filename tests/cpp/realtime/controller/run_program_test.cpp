@@ -110,6 +110,14 @@ TEST_F(RunProgram, RefusesAProgramForAnotherRobotByBothNames) {
   EXPECT_FALSE(fs::exists(options_.log));
 }
 
+TEST_F(RunProgram, RefusesAStartForAnotherNumberOfJointsByTheFile) {
+  MotionProgram longer = program();
+  longer.start = JointVector::Zero(3);
+  EXPECT_EQ(run(longer), kUnreadable);
+  EXPECT_NE(message_.find("program.json: the start has 3 values"), std::string::npos) << message_;
+  EXPECT_NE(message_.find("way out"), std::string::npos) << message_;
+}
+
 TEST_F(RunProgram, RefusesWhatCannotBePlannedAndWritesNothing) {
   MotionProgram far = program();
   std::get<PtpMove>(far.steps[0].what).target = JointTarget{JointVector::Constant(2, 100.0)};
