@@ -1,5 +1,6 @@
 """One class a code, one tree, all attributes, and a way across processes."""
 
+import json
 import pickle
 
 import pytest
@@ -95,3 +96,34 @@ def test_the_core_raises_the_class_of_the_code():
 def test_an_unknown_code_is_refused():
     with pytest.raises(errors.BadArgumentError, match="no error code"):
         _core.Problem("nonsense", "…")
+
+
+def test_a_value_just_beyond_its_bound_does_not_look_like_it(puma, abc):
+    with pytest.raises(errors.BadArgumentError, match=r"scale is 1\.0000001; .* at most 1"):
+        vp.Program(puma, start=abc["A"], scale=1.0000001)
+    with pytest.raises(errors.BadArgumentError, match=r"1\.0000001"):
+        vp.simulate(
+            vp.Program(puma, start=abc["A"]).movej(abc["B"]).plan(),
+            [(0.0, "override", 1.0000001)],
+        )
+
+
+def test_a_program_file_with_a_start_for_another_arm_is_refused_by_its_name(puma, abc, tmp_path):
+    path = tmp_path / "cell.json"
+    vp.Program(puma, start=abc["A"]).movej(abc["B"]).save(path)
+    content = json.loads(path.read_text(encoding="utf-8"))
+    content["start"].append(0.0)
+    path.write_text(json.dumps(content), encoding="utf-8")
+    with pytest.raises(
+        errors.BadProgramError, match=r"cell\.json: The start has 7 values"
+    ) as caught:
+        vp.Program.load(path)
+    assert caught.value.ways_out
+
+
+@pytest.mark.parametrize("wish", ["scale", "speed", "acceleration"])
+def test_a_wish_that_would_take_for_ever_has_a_way_out(puma, abc, wish):
+    report = vp.Program(puma, start=abc["A"]).movel(puma.fk(abc["B"]), **{wish: 1e-9}).check()
+    problem = next(p for p in report if wish in p.message)
+    assert "1e-09" in problem.message
+    assert problem.ways_out

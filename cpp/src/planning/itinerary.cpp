@@ -12,6 +12,7 @@
 #include "planning/leg_builder.hpp"
 #include "planning/tool_changes.hpp"
 #include "planning/ways_out.hpp"
+#include "viapoint/core/number_text.hpp"
 
 namespace viapoint::planning {
 namespace {
@@ -83,7 +84,8 @@ class Walk {
   void operator()(const Wait& wait) {
     if (!(wait.seconds >= 0.0) || !std::isfinite(wait.seconds)) {
       add(ErrorCode::kBadArgument,
-          "a wait of " + std::to_string(wait.seconds) + " s; it must be zero or more and finite");
+          "a wait of " + number_text(wait.seconds) + " s; it must be zero or more and finite",
+          {"give the wait in seconds, or leave it out"});
       return;
     }
     if (wait.seconds >= kShortestWait) outputs_here_ = 0;
@@ -236,17 +238,18 @@ class Walk {
     const size_t before = itinerary_.report.problems.size();
     const auto within = [&](const std::optional<double>& wish, const char* name, double most) {
       if (!wish || (*wish >= kLeastWish && *wish <= most)) return;
-      char text[128];
-      std::snprintf(text, sizeof text, "%s is %g; it must be at least %g and at most %g", name,
-                    *wish, kLeastWish, most);
-      add(ErrorCode::kBadArgument, text);
+      add(ErrorCode::kBadArgument,
+          std::string(name) + " is " + number_text(*wish) + "; it must be at least " +
+              number_text(kLeastWish) + " and at most " + number_text(most),
+          {std::string("give ") + name + " within that range, or leave it out"});
     };
     within(options.speed, "speed", kMostWish);
     within(options.acceleration, "acceleration", kMostWish);
     within(options.scale, "scale", 1.0);
     if (!(options.zone.size >= 0.0) || !std::isfinite(options.zone.size)) {
       add(ErrorCode::kBadArgument,
-          "zone is " + std::to_string(options.zone.size) + "; it must be zero or more and finite");
+          "zone is " + number_text(options.zone.size) + "; it must be zero or more and finite",
+          {"leave the zone out to stop at the point"});
     }
     const bool at_tool =
         options.zone.kind == ZoneKind::kRadius || options.zone.kind == ZoneKind::kDeviation;
