@@ -237,5 +237,5 @@ def test_a_point_file_with_a_damaged_frame_is_refused(puma: vp.Robot, tmp_path: 
     points = vp.PointList(path, puma)
     points.record("a", HOME, frame=vp.frames.Frame(np.eye(4), "table"))
     path.write_text(path.read_text().replace('"pose"', '"pos"'))
-    with pytest.raises(errors.BadProgramError, match='"frame" must have'):
+    with pytest.raises(errors.BadProgramError, match="frame"):
         vp.PointList(path)
