@@ -180,6 +180,9 @@ BernsteinComposition::BernsteinComposition(const TrajectoryPiece& piece)
     for (std::size_t d = 0; d < kOrders; ++d) {
       powers_[d][column] = unscaled(raise.degree > 0 ? product(raise, power[d]) : power[d]);
       rounding_[d][column] = k * error[d];
+      for (const double c : powers_[d][column].coefficients()) {
+        magnitude_[d][column] = std::max(magnitude_[d][column], std::abs(c));
+      }
     }
   }
 }
@@ -194,6 +197,13 @@ BernsteinPolynomial BernsteinComposition::of(const Path& path, int order) const 
     const auto power = powers[k - 1].coefficients();
     for (std::size_t i = 0; i < power.size(); ++i) b[i] += path[k] * power[i];
   }
+  return sum;
+}
+
+double BernsteinComposition::magnitude(const Path& path, int order) const {
+  const auto& magnitude = magnitude_[static_cast<std::size_t>(order)];
+  double sum = order == 0 ? std::abs(path[0]) : 0.0;
+  for (std::size_t k = 1; k <= kPowers; ++k) sum += std::abs(path[k]) * magnitude[k - 1];
   return sum;
 }
 

@@ -127,16 +127,17 @@ class Walk {
       tolerance[d] = kTightness * std::max(limit[d], reached);
       enough[d] = reached * (1.0 + kTightness);
     }
-    const std::array<double, 3> bound = proof.rate_bounds(path, enough);
+    const BernsteinComposition& composition = proof.composition();
     for (std::size_t d = 0; d < 3; ++d) {
       PlacedPeak& rate = joint.rates[d];
-      if (bound[d] <= enough[d]) {
-        rate.peak.bound = std::max(rate.peak.bound, bound[d]);
+      const int order = static_cast<int>(d) + 1;
+      const double rounding = composition.rounding(path, order);
+      const double bound = composition.magnitude(path, order) + rounding;
+      if (bound <= enough[d]) {
+        rate.peak.bound = std::max(rate.peak.bound, bound);
         continue;
       }
-      const int order = static_cast<int>(d) + 1;
-      const BernsteinPolynomial f = proof.composition().of(path, order);
-      const double rounding = proof.composition().rounding(path, order);
+      const BernsteinPolynomial f = composition.of(path, order);
       take(rate, f, tolerance[d], rounding, piece);
       take(rate, -f, tolerance[d], rounding, piece);
     }

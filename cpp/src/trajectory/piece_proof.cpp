@@ -9,7 +9,8 @@
 namespace viapoint {
 namespace {
 
-constexpr int kFew = 4, kMany = 16;
+using Quintic = BernsteinComposition::Path;
+
 /// u may leave [0, 1] by this much through rounding, which moves q by less than kOutside times the
 /// sum of its coefficients' magnitudes.
 constexpr double kTimingRounding = 1e-14, kOutside = 6.0 * kTimingRounding;
@@ -23,15 +24,9 @@ double value(const Quintic& c, double x) {
   return c[0] + x * (c[1] + x * (c[2] + x * (c[3] + x * (c[4] + x * c[5]))));
 }
 
-std::array<double, 3> bounds_by(const TimingSamples& samples, const Quintic& path) {
-  const Rates at = samples.reached(path), more = samples.between(path);
-  return {at.velocity + more.velocity, at.acceleration + more.acceleration, at.jerk + more.jerk};
-}
-
 }  // namespace
 
-PieceProof::PieceProof(const TrajectoryPiece& piece)
-    : piece_(piece), few_(piece.timing, piece.duration, kFew) {
+PieceProof::PieceProof(const TrajectoryPiece& piece) : piece_(piece) {
   const auto [low, high] = std::ranges::minmax(to_bernstein(piece.timing));
   timing_in_range_ = low >= -kTimingRounding && high <= 1.0 + kTimingRounding;
   timing_rises_ = std::ranges::min(to_bernstein(derivative(piece.timing))) >= 0.0;
@@ -63,14 +58,6 @@ PieceProof::Range PieceProof::same_range(const Quintic& path) const {
     timing += std::abs(piece_.timing[k]);
   }
   return {line, kEpsilon * (12.0 * size + 6.0 * slope * timing)};
-}
-
-std::array<double, 3> PieceProof::rate_bounds(const Quintic& path,
-                                              const std::array<double, 3>& enough) const {
-  const std::array<double, 3> bounds = bounds_by(few_, path);
-  if (bounds[0] <= enough[0] && bounds[1] <= enough[1] && bounds[2] <= enough[2]) return bounds;
-  if (!many_) many_.emplace(piece_.timing, piece_.duration, kMany);
-  return bounds_by(*many_, path);
 }
 
 const BernsteinComposition& PieceProof::composition() const {

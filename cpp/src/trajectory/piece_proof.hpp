@@ -1,12 +1,12 @@
 /// @file
 /// What is known of a trajectory piece, no dearer than what is asked: quick bounds first, its
-/// composed polynomials where these do not tell.
+/// composed polynomials where these do not tell. The timing has bounds of its own (rate_bounds.hpp)
+/// and none of these.
 #pragma once
 
 #include <array>
 #include <optional>
 
-#include "trajectory/rate_bounds.hpp"
 #include "viapoint/trajectory/bernstein_composition.hpp"
 #include "viapoint/trajectory/trajectory_piece.hpp"
 
@@ -15,6 +15,9 @@ namespace viapoint {
 /// The piece must outlive it and be sound (find_fault). Threads: one.
 class PieceProof {
  public:
+  /// Coefficients of a quintic in u, by power.
+  using Quintic = BernsteinComposition::Path;
+
   explicit PieceProof(const TrajectoryPiece& piece);
 
   /// True if u is seen at once to stay in [0, 1]; false tells nothing.
@@ -29,17 +32,11 @@ class PieceProof {
   /// Σ path[k] u(x)^k as a line between its ends, if it is seen at once that it only rises or only
   /// falls: its range is the same then. Otherwise the polynomial itself.
   [[nodiscard]] Range same_range(const Quintic& path) const;
-  /// Bounds of the rates' magnitudes, quick ones: where they are not at most `enough`, they need
-  /// not be close.
-  [[nodiscard]] std::array<double, 3> rate_bounds(const Quintic& path,
-                                                  const std::array<double, 3>& enough) const;
   [[nodiscard]] const BernsteinComposition& composition() const;
 
  private:
   const TrajectoryPiece& piece_;
   bool timing_in_range_, timing_rises_;
-  TimingSamples few_;
-  mutable std::optional<TimingSamples> many_;
   mutable std::optional<BernsteinComposition> composition_;
 };
 

@@ -69,7 +69,7 @@ std::vector<bool> too_coarse(const Course& course, const std::vector<TimedSpan>&
 
 /// The near-optimal timing; empty if the method does not get there.
 Timing quickest(const Course& course) {
-  constexpr double kFirstWeight = 0.1, kLastWeight = 0.003;
+  constexpr double kFirstWeight = 0.1, kLastWeight = 0.006;
   constexpr int kMostPasses = 6;
   constexpr double kUsed = 0.99;
   Grid grid = make_grid(course);

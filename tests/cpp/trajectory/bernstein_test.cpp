@@ -132,6 +132,30 @@ TEST(BernsteinComposition, AgreesWithTheChainRuleOfThePiece) {
   }
 }
 
+TEST(BernsteinComposition, MagnitudeIsNoLessThanAnyCoefficientAndTightOnAStraightPath) {
+  std::mt19937_64 random(11);
+  for (int trial = 0; trial < 2000; ++trial) {
+    SCOPED_TRACE(trial);
+    TrajectoryPiece piece = random_piece(random, 1);
+    const bool straight = trial % 2 == 0;
+    if (straight) {
+      for (size_t k = 2; k < 6; ++k) piece.path[k][0] = 0.0;
+    }
+    const BernsteinComposition composition(piece);
+    BernsteinComposition::Path path{};
+    for (size_t k = 0; k < 6; ++k) path[k] = piece.path[k][0];
+    for (int order = 0; order < 4; ++order) {
+      const BernsteinPolynomial f = composition.of(path, order);
+      const double largest = std::max(f.hull(), (-f).hull());
+      const double magnitude = composition.magnitude(path, order);
+      ASSERT_GE(magnitude, largest * (1.0 - 1e-14)) << order;
+      if (straight && order > 0) {
+        ASSERT_LE(magnitude, largest * (1.0 + 1e-14)) << order;
+      }
+    }
+  }
+}
+
 TEST(BernsteinComposition, StaysAccurateFarFromZero) {
   // A micrometre's move at 10 m: the offset must not spoil the derivatives.
   const TrajectoryPiece piece =

@@ -28,6 +28,9 @@ class BernsteinComposition {
   /// The derivative of order 0..3 by τ [s] of Σ_k path[k] u(x(τ))^k.
   /// @pre path[k] == 0 where k exceeds the degree of every joint of the piece
   [[nodiscard]] BernsteinPolynomial of(const Path& path, int order) const;
+  /// A quick bound of |of(path, order)| on [0, 1], the powers' magnitudes added up: as tight as the
+  /// coefficients of of() where the path is straight, looser where powers cancel.
+  [[nodiscard]] double magnitude(const Path& path, int order) const;
   /// How far rounding may have moved a coefficient of of(path, order). Grows with the coefficients
   /// of u and path, not with the result: cancellation between them is paid for here.
   [[nodiscard]] double rounding(const Path& path, int order) const;
@@ -41,6 +44,7 @@ class BernsteinComposition {
   /// [order][k - 1]: the power k of u, at the common degree of its order.
   std::array<std::array<BernsteinPolynomial, kPowers>, kOrders> powers_;
   std::array<std::array<double, kPowers>, kOrders> rounding_{};
+  std::array<std::array<double, kPowers>, kOrders> magnitude_{};  ///< largest |coefficient|
 };
 
 }  // namespace viapoint
