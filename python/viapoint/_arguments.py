@@ -34,7 +34,8 @@ def numbers_of(value: ArrayLike, name: str) -> Vector:
         raw = np.asarray(value)
         if raw.dtype.kind not in "iuf":
             raise TypeError
-        array = raw.astype(np.float64)
+        with np.errstate(over="ignore"):  # wider floats may be infinite as doubles
+            array = raw.astype(np.float64)
     except (TypeError, ValueError):
         raise BadArgumentError(f"{name} is {_short(value)}; it must hold numbers only.") from None
     if not np.isfinite(array).all():

@@ -43,7 +43,12 @@ def together(laws: Sequence[Law], timing: Timing = "synchronised") -> Law:
         No law, a law of several axes, laws that begin at different times, or, unless synchronised,
         one that would have to wait where it has speed.
     """
-    alone = list(laws)
+    try:
+        alone = list(laws)
+    except TypeError:
+        raise BadArgumentError(
+            f"laws is a {type(laws).__name__}; it must be a list of laws, one an axis."
+        ) from None
     for k, law in enumerate(alone):
         if not isinstance(law, Law) or law.shape not in ((), (1,)):
             raise BadArgumentError(f"laws[{k}] must be the law of one axis.")

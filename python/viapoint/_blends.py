@@ -18,6 +18,8 @@ _laws = _core.profile
 
 DEFAULT_HALF_GAP = 0.25
 """Time from a pseudo via point to its through point, as a share of the shorter segment there."""
+SMALLEST_HALF_GAP = 1e-6
+"""The same share; with less, the lines to the pseudo via points turn as if there were one point."""
 
 
 @dataclass(frozen=True)
@@ -61,13 +63,14 @@ def blended_lines(
         that velocity, a float or (n,), or with that of the slope heuristic.
     half_gap : float, optional
         Time from either pseudo via point to its through point [s]; by default a quarter of the
-        shorter segment beside it.
+        shorter segment beside it; at least a millionth of that.
 
     Raises
     ------
     BadArgumentError
         Durations and speed both or neither, sizes that do not fit, an acceleration too small to
-        leave a linear part (``limit`` is the least that works), a speed that is not reached.
+        leave a linear part (``limit`` is the least that works), a speed that is not reached, a
+        half_gap that is too small or too large.
     """
     shape, columns = point_columns(points)
     accelerations = values_by_axis(acceleration, "acceleration", shape, len(columns))
@@ -77,13 +80,13 @@ def blended_lines(
     if speed is None or durations is not None:
         raise BadArgumentError("give durations or speed, one of the two.")
     speeds = values_by_axis(speed, "speed", shape, len(columns) - 1)
+    times = _times_at(shape, columns, speeds, accelerations)
     try:
-        times = _times_at(shape, columns, speeds, accelerations)
         return _lines(shape, columns, times, accelerations, through, half_gap)
     except BadArgumentError as error:
-        if "no linear part" not in error.message:
-            raise
         axis = error.joint or 0
+        if not _is_too_gentle(accelerations[axis], error):
+            raise
         least = _least_at_speed(shape, columns, speeds, accelerations, through, half_gap, axis)
         if not math.isfinite(least):
             raise
@@ -230,10 +233,30 @@ def _through_points(
         velocity = (
             heuristic[index] if value is None else one_an_axis(value, f"through[{index}]", shape)
         )
-        room = DEFAULT_HALF_GAP * min(times[index - 1], times[index])
-        gap = room if half_gap is None else number(half_gap, "half_gap", "s", above=0.0)
-        passed.append(_ThroughPoint(index, velocity, float(gap)))
+        shorter = float(min(times[index - 1], times[index]))
+        gap = DEFAULT_HALF_GAP * shorter if half_gap is None else _half_gap(half_gap, shorter)
+        passed.append(_ThroughPoint(index, velocity, gap))
     return passed
+
+
+def _half_gap(value: float, shorter: float) -> float:
+    gap = number(value, "half_gap", "s", above=0.0)
+    least = SMALLEST_HALF_GAP * shorter
+    if gap < least:
+        raise BadArgumentError(
+            f"half_gap is {gap:g} s; it must be at least {least:g} s, a millionth of the shorter "
+            "segment beside its point.",
+            ways_out=["give a larger half_gap", "leave it out for a quarter of that segment"],
+            value=gap,
+            limit=least,
+        )
+    return gap
+
+
+def _is_too_gentle(accelerations: Vector, error: BadArgumentError) -> bool:
+    """Tell whether the lines were refused for their acceleration: it is held against the least."""
+    given = float(np.min(accelerations))
+    return error.value == given > 0.0 and error.limit is not None and error.limit > given
 
 
 def _least_at_speed(

@@ -115,9 +115,12 @@ def polynomial(conditions: Sequence[tuple[float, int, ArrayLike]]) -> Law:
         the polynomial open (such as velocities alone) or contradict each other, or that ask for
         coefficients which doubles cannot hold to 1e-9.
     """
-    if isinstance(conditions, (str, bytes)) or not hasattr(conditions, "__iter__"):
+    try:
+        rows = None if isinstance(conditions, (str, bytes)) else list(conditions)
+    except TypeError:
+        rows = None
+    if rows is None:
         raise BadArgumentError("conditions must be a list of (time, derivative, value).")
-    rows = list(conditions)
     for k, row in enumerate(rows):
         if isinstance(row, (str, bytes)) or not hasattr(row, "__len__") or len(row) != 3:
             raise BadArgumentError(f"conditions[{k}] must be (time, derivative, value).")

@@ -9,7 +9,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from . import _core
-from ._arguments import ArrayLike, Vector, number, numbers_of
+from ._arguments import ArrayLike, Vector, integer, number, numbers_of
 from ._law import Extremes, Part, State
 from .errors import BadArgumentError
 
@@ -111,16 +111,30 @@ class StateMotion:
         BadArgumentError
             Another derivative.
         """
-        low, low_time, high, high_time = self._core.extremes(derivative)
+        low, low_time, high, high_time = self._core.extremes(
+            integer(derivative, "derivative", 0, 3)
+        )
         return Extremes(
             *(values.reshape(self.shape) for values in (low, low_time, high, high_time))
         )
 
     def parts(self, axis: int = 0) -> list[Part]:
-        """Return the phases of one joint, in order of time; none where nothing moves."""
+        """Return the phases of one joint, in order of time; none where nothing moves.
+
+        Parameters
+        ----------
+        axis : int
+            Joint, from 0.
+
+        Raises
+        ------
+        BadArgumentError
+            No such joint.
+        """
+        joint = integer(axis, "axis", 0, self._core.joints - 1)
         return [
             Part(begin, end, np.array(coefficients))
-            for begin, end, coefficients in self._core.parts(axis)
+            for begin, end, coefficients in self._core.parts(joint)
         ]
 
     def knots(self, axis: int | None = None) -> Vector:
@@ -135,6 +149,11 @@ class StateMotion:
         -------
         ndarray, (m,)
             Ascending, from 0 to `duration` [s].
+
+        Raises
+        ------
+        BadArgumentError
+            No such joint.
         """
         axes = range(self._core.joints) if axis is None else (axis,)
         inner = [part.end for each in axes for part in self.parts(each)]

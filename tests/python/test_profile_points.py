@@ -127,7 +127,7 @@ def test_at_a_speed_the_least_acceleration_named_is_the_one_that_works():
         try:
             vp.profile.blended_lines(points, speed=speed, acceleration=start)
         except vp.errors.BadArgumentError as error:
-            if "no linear part" not in error.message:
+            if not error.value == start < error.limit:
                 continue  # the speed is not reached in an end segment
             refused += 1
             least = np.full(2, start)

@@ -293,7 +293,7 @@ def test_times_outside_are_refused(t):
 
 @pytest.mark.parametrize("joint", [-1, 3])
 def test_joints_that_are_not_there_are_refused(joint):
-    with pytest.raises(errors.BadArgumentError, match="there are 0 to 2"):
+    with pytest.raises(errors.BadArgumentError, match="from 0 to 2"):
         state_to_state(START, END).parts(joint)
 
 
