@@ -1,5 +1,7 @@
 // Robots in YAML: Denavit–Hartenberg tables (standard: Denavit & Hartenberg 1955 as in Paul 1981;
 // modified: Craig 1986), joint axes, or joints with limits alone.
+#include <yaml-cpp/depthguard.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -373,7 +375,9 @@ RobotDescription description_from_yaml(const std::string& text, const std::strin
   } catch (const YAML::Exception& error) {
     Problem problem;
     problem.code = ErrorCode::kBadRobot;
-    problem.message = "not YAML: " + error.msg;
+    // yaml-cpp calls a file whose brackets are too deep for its own stack "bad".
+    const bool deep = dynamic_cast<const YAML::DeepRecursion*>(&error) != nullptr;
+    problem.message = "not YAML: " + (deep ? "brackets stand too deep in one another" : error.msg);
     problem.ways_out = {"check that the file was written whole and that brackets are closed"};
     problem.file = source;
     if (!error.mark.is_null()) problem.line = error.mark.line + 1;

@@ -221,6 +221,7 @@ TEST(YamlDescription, RefusesEndlessNestingByName) {
     const Problem problem = problem_of(bracket[0] == '-' ? text.substr(6) : text);
     EXPECT_EQ(problem.code, ErrorCode::kBadRobot) << bracket;
     EXPECT_FALSE(problem.ways_out.empty());
+    EXPECT_TRUE(says(problem, "too deep in one another")) << problem.describe();
   }
   // Each of these names ten of the one before: ten thousand million values, if they were copied.
   std::string laughs = "a0: &a0 [0, 0, 0, 0, 0, 0, 0, 0, 0, 0]\n";
