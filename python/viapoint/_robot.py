@@ -8,7 +8,8 @@ from typing import cast
 import numpy as np
 
 from . import _core
-from ._arguments import ArrayLike, Vector, numbers_of, pose, shown, vector
+from ._arguments import ArrayLike, Vector, integer, numbers_of, pose, shown, vector
+from ._envelope import joint_envelope
 from ._kinematics import Kinematics
 from .errors import (
     BadArgumentError,
@@ -71,6 +72,33 @@ class Robot(Kinematics):
     def limits(self) -> _core.JointLimits:
         """The joint limits: ``position_min``, ``position_max``, ``velocity``, … each (n,)."""
         return self._core.limits
+
+    def joint_envelope(self, first: int, second: int, *, at: ArrayLike | None = None) -> Vector:
+        """Corners of what two joints may be together, under position and coupled limits.
+
+        Parameters
+        ----------
+        first, second : int
+            The two joints, from 0.
+        at : array_like, (n,), optional
+            Where the other joints stand [rad or m]; coupled limits count them. Default: zero.
+
+        Returns
+        -------
+        ndarray, (k, 2)
+            Corners of a convex polygon, in turn [rad or m]; (0, 2) where the others leave nothing.
+
+        Raises
+        ------
+        BadArgumentError
+            No two joints, or one without position limits.
+        """
+        i = integer(first, "first", 0, self.joints - 1)
+        j = integer(second, "second", 0, self.joints - 1)
+        if i == j:
+            raise BadArgumentError(f"first and second are both {i}; they must be two joints.")
+        place = np.zeros(self.joints) if at is None else vector(at, "at", self.joints)
+        return joint_envelope(self.limits, i, j, place)
 
     @property
     def has_kinematics(self) -> bool:
