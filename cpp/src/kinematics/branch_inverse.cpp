@@ -56,6 +56,26 @@ bool BranchInverse::are_same(const JointVector& a, const JointVector& b) const {
   return true;
 }
 
+void BranchInverse::gather(const InverseTask& task, const JointVector& near, ClosedSolutions& found,
+                           BranchSet& out) const {
+  for (ClosedBranch& branch : found.branches) {
+    if (!branch.wrist_free) {
+      bool moved = false;
+      if (!turns_.bring_near(branch.q, near, &moved)) continue;
+      if (!moved || confirmed(task, branch.q)) out.push_back(branch.q);
+      continue;
+    }
+    std::optional<JointVector> best;
+    each_share(branch, near, [&](const JointVector& candidate) {
+      bool moved = true;
+      const auto q = turns_.nearest(candidate, near, &moved);
+      if (!q || (best && !is_nearer(*q, *best, near))) return;
+      if (!moved || confirmed(task, *q)) best = *q;
+    });
+    if (best && out.size() < kMostBranches) out.push_back(*best);
+  }
+}
+
 std::optional<JointVector> BranchInverse::nearest(const InverseTask& task,
                                                   const JointVector& candidate,
                                                   const JointVector& reference) const {

@@ -29,6 +29,10 @@ class BranchInverse : public LimitedInverse {
   /// the turn shared out so that both wrist joints keep their limits.
   template <typename Visit>
   void each_share(const ClosedBranch& branch, const JointVector& held, Visit&& visit) const;
+  /// Every confirmed branch on its turn nearest to `near` within the limits. Moves the branches in
+  /// `found`. Real-time: safe.
+  void gather(const InverseTask& task, const JointVector& near, ClosedSolutions& found,
+              BranchSet& out) const;
   /// The confirmed turn of a candidate nearest to `reference` within the limits.
   [[nodiscard]] std::optional<JointVector> nearest(const InverseTask& task,
                                                    const JointVector& candidate,

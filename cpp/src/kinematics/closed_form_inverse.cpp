@@ -126,22 +126,7 @@ BranchStatus ClosedFormInverse::solve_branches(const Pose& pose_base_tool, const
   const InverseTask task(pose_base_tool);
   ClosedSolutions found;
   branches(task, near, found);
-  for (ClosedBranch& branch : found.branches) {
-    if (!branch.wrist_free) {
-      bool moved = false;
-      if (!turns_.bring_near(branch.q, near, &moved)) continue;
-      if (!moved || confirmed(task, branch.q)) out.push_back(branch.q);
-      continue;
-    }
-    std::optional<JointVector> best;
-    each_share(branch, near, [&](const JointVector& candidate) {
-      bool moved = true;
-      const auto q = turns_.nearest(candidate, near, &moved);
-      if (!q || (best && !is_nearer(*q, *best, near))) return;
-      if (!moved || confirmed(task, *q)) best = *q;
-    });
-    if (best && out.size() < kMostBranches) out.push_back(*best);
-  }
+  gather(task, near, found, out);
   if (out.size() > 0) return BranchStatus::kSolved;
   return found.branches.empty() && !found.held ? BranchStatus::kUnreachable
                                                : BranchStatus::kOutsideLimits;

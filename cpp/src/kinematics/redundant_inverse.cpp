@@ -69,6 +69,21 @@ std::vector<JointVector> RedundantInverse::solve_all_at(const Pose& pose_base_to
   return solutions;
 }
 
+BranchStatus RedundantInverse::solve_branches(const Pose& pose_base_tool, const JointVector& near,
+                                              BranchSet& out) const noexcept {
+  out.clear();
+  if (near.size() != joints() || !near.allFinite() || !is_pose(pose_base_tool)) {
+    return BranchStatus::kBadArgument;
+  }
+  const InverseTask task(pose_base_tool);
+  ClosedSolutions found;
+  form_->solve(pose_base_tool, form_->parameter_of(near), near, found);
+  keep_confirmed(task, found);
+  gather(task, near, found, out);
+  if (out.size() > 0) return BranchStatus::kSolved;
+  return found.branches.empty() ? BranchStatus::kUnreachable : BranchStatus::kOutsideLimits;
+}
+
 double RedundantInverse::margin(const JointVector& q) const {
   double least = 0.5;
   for (int i = 0; i < q.size(); ++i) {

@@ -30,6 +30,8 @@ class RedundantInverse final : public BranchInverse {
                                  const JointVector& reference) const override;
   [[nodiscard]] JointVector near_unlimited(const InverseTask& task,
                                            const JointVector& reference) const override;
+  [[nodiscard]] BranchStatus solve_branches(const Pose& pose_base_tool, const JointVector& near,
+                                            BranchSet& branches) const noexcept override;
 
  private:
   struct Choice {

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "kinematics/arms.hpp"
+#include "realtime/no_allocation_scope.hpp"
 #include "viapoint/core/error.hpp"
 #include "viapoint/core/units.hpp"
 #include "viapoint/kinematics/inverse_kinematics.hpp"
@@ -37,6 +38,36 @@ TEST_P(SevenJoints, FindTheGeneratingJointsAtTheirRedundancy) {
     most = std::max(most, all.size());
   }
   EXPECT_GE(most, 2u);
+}
+
+TEST_P(SevenJoints, GiveTheBranchesAtTheRedundancyOfNearWithoutAHeap) {
+  const RobotPtr robot = arm(GetParam());
+  const InverseKinematics& inverse = robot->inverse();
+  std::mt19937_64 generator(86);
+  for (int problem = 0; problem < 1000; ++problem) {
+    SCOPED_TRACE(problem);
+    const JointVector q = random_joints(*robot, generator);
+    const Pose pose = robot->forward().pose(q);
+    BranchSet branches;
+    BranchStatus status{};
+    std::uint64_t calls = 0;
+    {
+      const NoAllocationScope scope;
+      status = inverse.solve_branches(pose, q, branches);
+      calls = scope.calls();
+    }
+    ASSERT_EQ(calls, 0u);
+    ASSERT_EQ(status, BranchStatus::kSolved);
+    double nearest = 1e300;
+    for (const JointVector& branch : branches) {
+      ASSERT_TRUE(robot->limits().contains(branch));
+      ASSERT_LT(pose_distance(robot->fk(branch), pose), 2e-9);
+      const double off = inverse.redundancy_of(branch) - inverse.redundancy_of(q);
+      ASSERT_NEAR(std::remainder(off, 2.0 * kPi), 0.0, 1e-6);
+      nearest = std::min(nearest, (branch - q).lpNorm<Eigen::Infinity>());
+    }
+    ASSERT_LT(nearest, 1e-6);
+  }
 }
 
 TEST_P(SevenJoints, GiveOneSolutionForEachConfiguration) {

@@ -46,7 +46,8 @@ class InverseKinematics {
   [[nodiscard]] virtual JointVector solve_near_unlimited(const Pose& pose_base_tool,
                                                          const JointVector& near) const = 0;
   /// Without a heap and without exceptions: every branch on its turn nearest to `near` within the
-  /// limits. Real-time: safe. @return kNoClosedForm where the arm has none
+  /// limits. Seven joints: every branch with the redundancy that `near` has; kUnreachable then says
+  /// so for that value only. Real-time: safe. @return kNoClosedForm where the arm has none
   [[nodiscard]] virtual BranchStatus solve_branches(const Pose& pose_base_tool,
                                                     const JointVector& near,
                                                     BranchSet& branches) const noexcept = 0;
