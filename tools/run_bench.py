@@ -2,10 +2,10 @@
 
 Subjects: ``tick`` (one cycle of the interpolator), ``plan`` (planning a move), ``certificate``
 (proving a motion), ``walk`` (timing of long paths), ``insertion`` (tool curves as joints, every
-proof checked), ``kinematics`` (inverse kinematics), all in C++ by viapoint-bench; ``sample``
-(states of a motion into numpy arrays) in Python; ``profiles`` (state to state) beside Ruckig,
-``paths`` (timing along paths, corners) beside toppra, copp and justblend. Each has its place in
-tools/benches.
+proof checked), ``kinematics`` (inverse kinematics), ``tracking`` (tool lines followed pose by
+pose), all in C++ by viapoint-bench; ``sample`` (states of a motion into numpy arrays) in Python;
+``profiles`` (state to state) beside Ruckig, ``paths`` (timing along paths, corners) beside
+toppra, copp and justblend. Each has its place in tools/benches.
 """
 
 import argparse
@@ -14,7 +14,7 @@ import json
 import sys
 from pathlib import Path
 
-from benches import core, documents, paths, profiles, sampling, tables
+from benches import core, documents, kinematics, paths, profiles, sampling, tables
 from benches.machine import ROOT, machine
 from benches.tables import Row
 
@@ -30,7 +30,10 @@ def measure(subject: str, options: argparse.Namespace) -> tuple[list[Row], list[
         What is shown, and the cases in which a peer gave another answer, which are only kept.
     """
     if subject in core.SUBJECTS:
-        return core.measure(options.program, subject, quick=options.quick), []
+        rows = core.measure(options.program, subject, quick=options.quick)
+        if subject == "kinematics":
+            rows += kinematics.measure(quick=options.quick)
+        return rows, []
     if subject == "sample":
         return sampling.measure(quick=options.quick), []
     if subject == "paths":
