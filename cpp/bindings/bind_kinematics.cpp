@@ -80,15 +80,6 @@ stands for any.)")
            [](const Configuration& c) { return "<Configuration " + c.describe() + ">"; });
 }
 
-/// A plain array of doubles in rows, of this shape, without a conversion.
-const double* plain(py::handle array, int rows, int columns) {
-  if (!Array::check_(array)) return nullptr;
-  const auto given = py::reinterpret_borrow<Array>(array);
-  if (columns == 0) return given.ndim() == 1 && given.shape(0) == rows ? given.data() : nullptr;
-  const bool fits = given.ndim() == 2 && given.shape(0) == rows && given.shape(1) == columns;
-  return fits ? given.data() : nullptr;
-}
-
 using RowMajorPose = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
 
 /// True for a pose that needs no correction.
@@ -113,18 +104,28 @@ Array array_of(const JointVector& q) {
   return out;
 }
 
+/// Arrays of doubles in any order, without a conversion.
+using AnyOrder = py::array_t<double, 0>;
+
 /// ik(pose, near) of plain arrays that need no check beyond this one; None for all others.
 std::optional<Array> ik_quick(const RobotHandle& self, py::handle pose, py::handle near) {
   const int n = self.robot->joints();
-  const double* at = plain(pose, 4, 4);
-  if (at == nullptr || !self.robot->has_kinematics()) return std::nullopt;
-  const Eigen::Map<const RowMajorPose> matrix(at);
+  if (!AnyOrder::check_(pose) || !self.robot->has_kinematics()) return std::nullopt;
+  const auto given = py::reinterpret_borrow<AnyOrder>(pose);
+  if (given.ndim() != 2 || given.shape(0) != 4 || given.shape(1) != 4) return std::nullopt;
+  RowMajorPose elements;
+  const auto element = given.unchecked<2>();
+  for (int row = 0; row < 4; ++row) {
+    for (int column = 0; column < 4; ++column) elements(row, column) = element(row, column);
+  }
+  const Eigen::Map<const RowMajorPose> matrix(elements.data());
   if (!is_exact(matrix)) return std::nullopt;
   JointVector reference = JointVector::Zero(n);
   if (!near.is_none()) {
-    const double* joints = plain(near, n, 0);
-    if (joints == nullptr) return std::nullopt;
-    reference = Eigen::Map<const Vector>(joints, n);
+    if (!AnyOrder::check_(near)) return std::nullopt;
+    const auto joints = py::reinterpret_borrow<AnyOrder>(near);
+    if (joints.ndim() != 1 || joints.shape(0) != n) return std::nullopt;
+    for (int i = 0; i < n; ++i) reference[i] = joints.unchecked<1>()(i);
     if (!reference.allFinite()) return std::nullopt;
   }
   return array_of(self.robot->inverse().solve_near(pose_of(matrix), reference));
