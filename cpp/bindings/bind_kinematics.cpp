@@ -107,8 +107,13 @@ Array array_of(const JointVector& q) {
 /// Arrays of doubles in any order, without a conversion.
 using AnyOrder = py::array_t<double, 0>;
 
-/// ik(pose, near) of plain arrays that need no check beyond this one; None for all others.
-std::optional<Array> ik_quick(const RobotHandle& self, py::handle pose, py::handle near) {
+/// What an ik call asks, of plain arrays that need no check beyond this one; None for all others.
+struct PlainRequest {
+  Pose pose;
+  JointVector near;
+};
+std::optional<PlainRequest> plain_request(const RobotHandle& self, py::handle pose,
+                                          py::handle near) {
   const int n = self.robot->joints();
   if (!AnyOrder::check_(pose) || !self.robot->has_kinematics()) return std::nullopt;
   const auto given = py::reinterpret_borrow<AnyOrder>(pose);
@@ -120,15 +125,31 @@ std::optional<Array> ik_quick(const RobotHandle& self, py::handle pose, py::hand
   }
   const Eigen::Map<const RowMajorPose> matrix(elements.data());
   if (!is_exact(matrix)) return std::nullopt;
-  JointVector reference = JointVector::Zero(n);
-  if (!near.is_none()) {
-    if (!AnyOrder::check_(near)) return std::nullopt;
-    const auto joints = py::reinterpret_borrow<AnyOrder>(near);
-    if (joints.ndim() != 1 || joints.shape(0) != n) return std::nullopt;
-    for (int i = 0; i < n; ++i) reference[i] = joints.unchecked<1>()(i);
-    if (!reference.allFinite()) return std::nullopt;
+  PlainRequest request{pose_of(matrix), JointVector::Zero(n)};
+  if (near.is_none()) return request;
+  if (!AnyOrder::check_(near)) return std::nullopt;
+  const auto joints = py::reinterpret_borrow<AnyOrder>(near);
+  if (joints.ndim() != 1 || joints.shape(0) != n) return std::nullopt;
+  for (int i = 0; i < n; ++i) request.near[i] = joints.unchecked<1>()(i);
+  if (!request.near.allFinite()) return std::nullopt;
+  return request;
+}
+
+std::optional<Array> ik_quick(const RobotHandle& self, py::handle pose, py::handle near) {
+  const auto request = plain_request(self, pose, near);
+  if (!request) return std::nullopt;
+  return array_of(self.robot->inverse().solve_near(request->pose, request->near));
+}
+
+std::optional<Array> ik_all_quick(const RobotHandle& self, py::handle pose, py::handle near) {
+  const auto request = plain_request(self, pose, near);
+  if (!request) return std::nullopt;
+  std::vector<JointVector> all;
+  {
+    const py::gil_scoped_release release;
+    all = self.robot->inverse().solve_all(request->pose, request->near);
   }
-  return array_of(self.robot->inverse().solve_near(pose_of(matrix), reference));
+  return rows_of(all);
 }
 
 /// One pose a row, one answer a row; with `nan`, rows that have none are NaN.
@@ -266,6 +287,8 @@ void bind_inverse(py::class_<RobotHandle>& robot) {
             return rows_of(all);
           },
           py::arg("position"), py::arg("near"), py::arg("config"))
+      .def("ik_all_quick", &ik_all_quick, py::arg("pose"), py::arg("near"),
+           "ik_all() for any configuration, of such arrays as ik_quick() takes; None for others.")
       .def("ik_quick", &ik_quick, py::arg("pose"), py::arg("near"),
            "ik_near() of arrays that need no conversion and no correction; None for others.")
       .def(

@@ -172,6 +172,10 @@ class Kinematics:
         NotARotationError, UnreachableError, OutsideLimitsError, UncontrolledError, BadArgumentError
             As for `ik`.
         """
+        if position is None and config is None and redundancy is None:
+            quick = self._core.ik_all_quick(pose, near)
+            if quick is not None:
+                return quick
         reference = self._reference(near)
         wish = _ANY if config is None else _configuration(config)
         if position is not None:

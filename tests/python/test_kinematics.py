@@ -37,6 +37,9 @@ def test_quick_calls_answer_as_converted_ones(robot: vp.Robot):
         )
         transposed = np.asfortranarray(pose)  # not in rows: converted
         np.testing.assert_array_equal(robot.ik(pose, near=q), robot.ik(transposed, near=q))
+        np.testing.assert_array_equal(
+            robot.ik_all(pose, near=q), robot.ik_all(pose.tolist(), near=q.tolist())
+        )
 
 
 def test_a_configuration_finds_its_joints_again():

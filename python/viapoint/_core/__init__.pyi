@@ -272,6 +272,12 @@ class RobotModel:
         near: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
         config: Configuration,
     ) -> numpy.typing.NDArray[numpy.float64]: ...
+    def ik_all_quick(
+        self, pose: typing.Any, near: typing.Any
+    ) -> numpy.typing.NDArray[numpy.float64] | None:
+        """
+        ik_all() for any configuration, of such arrays as ik_quick() takes; None for others.
+        """
     def ik_batch(
         self,
         poses: typing.Annotated[numpy.typing.ArrayLike, numpy.float64],
