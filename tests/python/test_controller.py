@@ -25,11 +25,18 @@ def program_of(kind, puma, abc):
     program = vp.Program(puma, start=abc["A"], name=kind)
     if kind == "joints":
         return program.movej(abc["B"], zone=50 * mm).set_do(3, True).movej(abc["C"]).wait(0.05)
+    if kind == "frames and tools":
+        shift = np.eye(4)
+        shift[:3, 3] = [0.3, -0.2, 0.1]
+        table, tool = vp.frames.Frame(shift, "table"), vp.frames.Tool(shift, "gripper")
+        program.set_frame(table).set_tool(tool)
+        program.movej(table.from_base(puma.with_tool(tool).fk(abc["B"])), zone=50 * mm)
+        return program.set_tool().movej(table.from_base(puma.fk(abc["C"])))
     program.movel(puma.fk(abc["B"]), orientation="wrist", zone=50 * mm)
     return program.movel(puma.fk(abc["C"]), orientation="wrist", scale=0.7)
 
 
-@pytest.mark.parametrize("kind", ["joints", "lines"])
+@pytest.mark.parametrize("kind", ["joints", "lines", "frames and tools"])
 def test_the_setpoints_are_the_same_to_the_last_bit(controller, puma, abc, kind, tmp_path):
     program = program_of(kind, puma, abc)
     path, log = tmp_path / "p.json", tmp_path / "log.csv"
