@@ -1,7 +1,6 @@
-#include <time.h>
-
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <optional>
 #include <random>
 #include <string>

@@ -74,7 +74,7 @@ TEST_P(SevenJoints, GiveOneSolutionForEachConfiguration) {
   const RobotPtr robot = arm(GetParam());
   const InverseKinematics& inverse = robot->inverse();
   std::mt19937_64 generator(82);
-  constexpr int kProblems = 500;
+  constexpr int kProblems = 200;
   int same_sides = 0;
   for (int problem = 0; problem < kProblems; ++problem) {
     SCOPED_TRACE(problem);
