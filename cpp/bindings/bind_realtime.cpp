@@ -7,6 +7,7 @@
 #include "bindings.hpp"
 #include "viapoint/drives/simulated_drive.hpp"
 #include "viapoint/realtime/log_csv.hpp"
+#include "viapoint/realtime/virtual_jog.hpp"
 
 namespace viapoint::python {
 namespace {
@@ -227,6 +228,23 @@ void bind_realtime(py::module_& m) {
       .def_property_readonly("shortcomings",
                              [](const LoopHandle& l) { return l.open()->shortcomings(); })
       .def("close", &LoopHandle::close);
+  py::class_<VirtualJog>(m, "VirtualJog", "Hold-to-run in virtual time.")
+      .def(py::init([](const RobotHandle& robot, const Vector& start, double cycle) {
+             return VirtualJog(robot.robot->limits(),
+                               joints_from(start, "start", robot.robot->joints()),
+                               std::chrono::nanoseconds(std::llround(cycle * 1e9)));
+           }),
+           py::arg("robot"), py::arg("start"), py::kw_only(), py::arg("cycle"))
+      .def(
+          "jog",
+          [](VirtualJog& j, const Vector& velocity) {
+            j.jog(joints_from(velocity, "velocity", static_cast<int>(j.position().size())));
+          },
+          py::arg("velocity"))
+      .def("pass_cycles", &VirtualJog::pass, py::arg("count"))
+      .def_property_readonly("position", [](const VirtualJog& j) { return Vector(j.position()); })
+      .def_property_readonly("jogging", &VirtualJog::jogging)
+      .def_property_readonly("jog_block", &VirtualJog::block);
   m.def(
       "admit",
       [](const MotionHandle& motion, const Vector& position) {

@@ -294,7 +294,7 @@ def connect(
         joints = _start_of(parts.query, arm_robot.joints)
     require_within_limits(arm_robot, joints, "start", ["Say where the arm stands: start=[…]."])
     if _session.current().virtual:
-        return Arm(arm_robot, VirtualLoop(joints, period), period)
+        return Arm(arm_robot, VirtualLoop(arm_robot, joints, period), period)
     return Arm(arm_robot, _core.ControllerLoop(arm_robot._core, joints, cycle=period), period)
 
 

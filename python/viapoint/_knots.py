@@ -30,7 +30,7 @@ def insert_knots(
     pose0, pose1 : array_like, (4, 4)
         pose_base_tool at both ends [m].
     position, angle : float
-        Tolerances [m], [rad].
+        Tolerances [m], [rad], 1e-8 or more: less would be lost in rounding.
     method : {"certified", "taylor"}
         ``"certified"``: knots of quintic pieces whose deviation is proven all along, as `movel`
         uses them. ``"taylor"``: bounded deviation joint paths (Taylor 1979), straight in the joints
@@ -60,6 +60,6 @@ def insert_knots(
         pose(pose1, "pose1")[0],
         near=reference,
         method=kind,
-        position=number(position, "position", "m", above=0.0),
-        angle=number(angle, "angle", "rad", above=0.0),
+        position=number(position, "position", "m", least=1e-8),
+        angle=number(angle, "angle", "rad", least=1e-8),
     )

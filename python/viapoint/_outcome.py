@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 from rich.markup import escape
 from rich.table import Table
 
+from ._arguments import writing
 from ._job import Job
 from ._motion import Motion
 from ._plots import DRAWINGS, drawings_for, save_figure, save_plot
@@ -18,12 +20,17 @@ def file_stem(script: Path, motion: Motion, taken: set[str]) -> str:
     """Name the files of a motion after script and program, never the same twice."""
     program = re.sub(r"[^\w.-]+", "_", motion.program.name.strip()).strip("_")
     base = script.stem if program in ("", "program", script.stem) else f"{script.stem}_{program}"
-    stem, count = base, 1
-    while stem in taken:
+    return unused(base, taken)
+
+
+def unused(base: str, taken: set[str]) -> str:
+    """Take a name; where it is taken, one with a number."""
+    name, count = base, 1
+    while name in taken:
         count += 1
-        stem = f"{base}_{count}"
-    taken.add(stem)
-    return stem
+        name = f"{base}_{count}"
+    taken.add(name)
+    return name
 
 
 def run_tables(job: Job) -> list[Table]:
@@ -60,24 +67,26 @@ def motion_tables(motion: Motion) -> list[Table]:
     return [table, _share_table(motion)]
 
 
-def write_run(job: Job, folder: Path, stem: str) -> list[Path]:
-    """Write the log (CSV and npz) and the pictures of what was executed."""
-    folder.mkdir(parents=True, exist_ok=True)
+def write_run(job: Job, folder: Path, stem: str) -> Iterator[Path]:
+    """Write the log (CSV and npz) and the pictures of what was executed, one at a time."""
+    with writing(folder):
+        folder.mkdir(parents=True, exist_ok=True)
     log = job.log
-    files = [folder / f"{stem}.csv", folder / f"{stem}.npz"]
-    log.save_csv(files[0])
-    log.save_npz(files[1])
+    log.save_csv(folder / f"{stem}.csv")
+    yield folder / f"{stem}.csv"
+    log.save_npz(folder / f"{stem}.npz")
+    yield folder / f"{stem}.npz"
     samples = log.samples
     for what in drawings_for(job.motion):
         picture = folder / f"{stem}_{what}.png"
         save_figure(DRAWINGS[what](samples, job.motion), picture)
-        files.append(picture)
-    return files
+        yield picture
 
 
 def write_pictures(motion: Motion, folder: Path, stem: str) -> list[Path]:
     """Write the pictures of a planned motion."""
-    folder.mkdir(parents=True, exist_ok=True)
+    with writing(folder):
+        folder.mkdir(parents=True, exist_ok=True)
     files = []
     for what in drawings_for(motion):
         files.append(folder / f"{stem}_{what}.png")

@@ -10,9 +10,12 @@ import numpy as np
 from . import _core
 from ._arguments import Vector
 from ._job import ENDED, RunReport
+from ._robot import Robot
 from .errors import BusyError, DriveFaultError
 
 _STATES = _core.run_states()
+_HOLD = 0.05
+"""A call to jog, and a look at one, let so much time pass [s]: buttons are repeated that often."""
 _LOOKS = 20
 """A motion is over after so many looks at it, so that a script which polls gets on."""
 
@@ -124,9 +127,11 @@ class VirtualExecution:
 class VirtualLoop:
     """Runs motions in virtual time, one after the other, refusing what the drive would refuse."""
 
-    def __init__(self, start: Vector, cycle: float) -> None:
+    def __init__(self, robot: Robot, start: Vector, cycle: float) -> None:
+        self._robot = robot
         self._cycle = cycle
-        self._rest = np.array(start)
+        self._jog = _core.VirtualJog(robot._core, start, cycle=cycle)
+        self._hold = math.ceil(_HOLD / cycle)
         self._override = 1.0
         self._run: VirtualExecution | None = None
         self._shortcomings: list[str] = []
@@ -157,7 +162,8 @@ class VirtualLoop:
         """Joints after a while has passed, (n,)."""
         self._require_open()
         if self._run is None:
-            return self._rest.copy()
+            self._jog.pass_cycles(self._hold)
+            return np.array(self._jog.position)
         self._run.state  # noqa: B018 -- the look lets time pass
         return self._run.joints()
 
@@ -196,13 +202,17 @@ class VirtualLoop:
                 raise BusyError(
                     "A run is already under way.", ways_out=["Resume or stop it, and wait for it."]
                 )
-            self._rest, self._run = self._run.joints(), None
-        _core.admit(motion, self._rest)
+            self._end_run()
+        if self._jog.jogging:
+            raise BusyError(
+                "the arm is being jogged", ways_out=["stop the jog, and wait until the arm rests"]
+            )
+        _core.admit(motion, self._jog.position)
         self._run = VirtualExecution(motion, self._override, self._cycle)
         return self._run
 
     def jog(self, velocity: Vector) -> None:
-        """Check the arm only: it stays where it is, because no time passes between two calls.
+        """Jog, and let pass what a script usually lets pass until it calls again.
 
         Raises
         ------
@@ -210,24 +220,37 @@ class VirtualLoop:
             A run is under way.
         DriveFaultError
             The arm is closed.
+        VelocityLimitError
+            A joint is asked for more than its velocity limit.
         """
         if self.busy:
             raise BusyError(
                 "A run is under way, and the arm jogs only between runs.",
                 ways_out=["Wait for its end.", "Stop it first."],
             )
+        self._end_run()
+        self._jog.jog(velocity)
+        self._jog.pass_cycles(self._hold)
+
+    def _end_run(self) -> None:
+        """Have the arm rest where its last run has ended."""
+        if self._run is not None:
+            rest, self._run = self._run.joints(), None
+            self._jog = _core.VirtualJog(self._robot._core, rest, cycle=self._cycle)
 
     @property
     def jogging(self) -> bool:
-        """Never: see `jog`."""
+        """True until a jog has come to rest, after a while has passed."""
         self._require_open()
-        return False
+        self._jog.pass_cycles(self._hold)
+        return self._jog.jogging
 
     @property
     def jog_block(self) -> str:
-        """Nothing: see `jog`."""
+        """What keeps the jog from doing what was asked, after a while has passed."""
         self._require_open()
-        return ""
+        self._jog.pass_cycles(self._hold)
+        return self._jog.jog_block
 
     def close(self) -> None:
         """Disconnect; a run under way is brought to rest on its path first."""

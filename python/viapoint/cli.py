@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-import os
+import io
 import runpy
 import signal
 import sys
+import tempfile
 import traceback
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -20,9 +21,10 @@ from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedCo
 from rich.table import Table
 
 from . import _core, _session
+from ._arguments import writing
 from ._job import Job
 from ._motion import Motion
-from ._outcome import file_stem, motion_tables, run_tables, write_pictures, write_run
+from ._outcome import file_stem, motion_tables, run_tables, unused, write_pictures, write_run
 from ._program import Program
 from ._report import Report
 from ._robot import Robot, load_robot
@@ -152,17 +154,16 @@ def run(script: Script, out: Folder = Path("out"), robot: RobotFile = None) -> N
     """Run a script; then show its figures and write its logs and pictures."""
     recorder = ProgressRecorder()
     try:
-        with _reported(recorder), _sigterm_as_ctrl_c():
+        with _reported(recorder), _signals_as_ctrl_c():
             _require_writable(out)
             _execute(script, recorder, robot)
     finally:
         recorder.close()
-        taken: set[str] = set()
-        for job in recorder.runs:
-            console.print(*run_tables(job))
-            _say_files(write_run(job, out, file_stem(script, job.motion, taken)))
+        lost = _keep_runs(recorder.runs, out, script)
     if not recorder.runs:
         console.print("The script ran nothing: no [bold]arm.run(program)[/bold] was reached.")
+    if lost:
+        raise typer.Exit(1)
 
 
 @app.command()
@@ -208,12 +209,16 @@ def export(script: Script, out: Folder = Path("out"), robot: RobotFile = None) -
     with _reported(recorder):
         _require_writable(out)
         _execute(script, recorder, robot)
-        out.mkdir(parents=True, exist_ok=True)
+        with writing(out):
+            out.mkdir(parents=True, exist_ok=True)
         taken: set[str] = set()
+        written: list[Path] = []
         for motion in recorder.chosen:
             path = out / f"{file_stem(script, motion, taken)}.json"
             motion.program.save(path)
-            _say_files([path])
+            written.append(path)
+        written += _save_own_robots(recorder.chosen, out)
+        _say_files(written)
 
 
 robots_app = typer.Typer(help="List the built-in robots; explain a description.")
@@ -274,6 +279,9 @@ def common(
 
 def main() -> None:
     """Entry point of the command."""
+    for stream in (sys.stdout, sys.stderr):  # a terminal that knows no µ gets a \\xb5
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
     app()
 
 
@@ -320,31 +328,75 @@ def _from_script_on(trace: TracebackType | None, script: str) -> TracebackType |
     return trace
 
 
+def _save_own_robots(motions: list[Motion], out: Path) -> list[Path]:
+    """Write the robots that a script has made or changed: the controller needs their files."""
+    own = {motion.robot.fingerprint: motion.robot for motion in motions}
+    for name in _core.builtin_robots():
+        own.pop(load_robot(name).fingerprint, None)
+    files = []
+    taken: set[str] = set()
+    for robot in own.values():
+        files.append(out / f"{unused(robot.name, taken)}.yaml")
+        robot.save(files[-1])
+    return files
+
+
+def _keep_runs(runs: list[Job], out: Path, script: Path) -> bool:
+    """Write what was run, then show it, so that nothing said can cost a log; True if one is lost.
+
+    A run whose files cannot be written does not keep the others from being written.
+    """
+    taken: set[str] = set()
+    kept: list[tuple[Job, list[Path]]] = []
+    lost: list[str] = []
+    for job in runs:
+        stem = file_stem(script, job.motion, taken)
+        files: list[Path] = []
+        try:
+            files.extend(write_run(job, out, stem))
+        except (OSError, MotionError) as error:
+            lost.append(f"{out / stem}: {getattr(error, 'strerror', None) or error}")
+        kept.append((job, files))
+    for text in lost:
+        errors.print(f"[bold red]lost[/bold red] {escape(text)}", soft_wrap=True)
+    for job, files in kept:
+        console.print(*run_tables(job))
+        _say_files(files)
+    return bool(lost)
+
+
 def _require_writable(folder: Path) -> None:
-    """Refuse, before anything moves, a folder that could not be made or written into."""
+    """Refuse, before anything moves, a folder that cannot be made or written into: by trying."""
     there = folder
     while not there.exists() and there != there.parent:
         there = there.parent
-    if not there.is_dir() or not os.access(there, os.W_OK | os.X_OK):
+    try:
+        with tempfile.TemporaryDirectory(dir=there):
+            pass
+    except OSError as error:
         raise FileError(
-            f"{folder} cannot be written: {there} is no folder that you may write into.",
+            f"{folder} cannot be written: {there}: {error.strerror or error}.",
             file=str(folder),
             ways_out=["Give another folder: --out FOLDER."],
-        )
+        ) from error
 
 
 @contextmanager
-def _sigterm_as_ctrl_c() -> Iterator[None]:
-    """Have SIGTERM, too, bring the arm to rest on its path and keep the log."""
+def _signals_as_ctrl_c() -> Iterator[None]:
+    """Have SIGTERM, and a terminal that closes, bring the arm to rest and keep the log too."""
 
     def interrupt(number: int, frame: FrameType | None) -> None:
         raise KeyboardInterrupt
 
-    before = signal.signal(signal.SIGTERM, interrupt)
+    before = {number: signal.getsignal(number) for number in (signal.SIGTERM, signal.SIGHUP)}
+    for number, handler in before.items():
+        if handler is not signal.SIG_IGN:  # under nohup it stays ignored
+            signal.signal(number, interrupt)
     try:
         yield
     finally:
-        signal.signal(signal.SIGTERM, before)
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 @contextmanager

@@ -110,6 +110,18 @@ def test_export_writes_programs_that_read_back(tmp_path):
     assert program.plan().duration > 0.1
 
 
+def test_export_writes_the_robot_that_a_script_has_made(tmp_path):
+    made = '"puma560").with_limits(velocity=[1] * 6)'
+    text = SCRIPT.replace('"puma560")', made, 1)
+    assert "with_limits" in text
+    text = text.replace("start=start) as arm", "start=start, robot=robot) as arm")
+    result = call("export", write(tmp_path / "job.py", text, name="p", target=GOOD))
+    assert result.exit_code == 0, result.output
+    robot = vp.load_robot(str(tmp_path / "out" / "puma560.yaml"))
+    assert robot.limits.velocity.tolist() == [1.0] * 6
+    assert vp.Program.load(tmp_path / "out" / "job_p.json", robot).plan().duration > 0.1
+
+
 def test_a_program_file_runs_like_a_script(tmp_path):
     call("export", write(tmp_path / "job.py", name="p", target=GOOD), "-o", ".")
     result = call("run", "job_p.json")
@@ -239,12 +251,68 @@ def test_robots_lists_the_built_in_ones():
         assert name in done.stdout
 
 
+RUNS_TWICE = """
+    import pathlib
+    import viapoint as vp
+    robot = vp.load_robot("puma560")
+    start = [0, 0, 0, 0, 0.5, 0]
+    out = [0.02, 0, 0, 0, 0.5, 0]
+    pathlib.Path("out").mkdir(exist_ok=True)
+    pathlib.Path("out/job_one.npz").mkdir(exist_ok=True)  # a file cannot go where a folder is
+    with vp.connect("sim://puma560", start=start) as arm:
+        arm.run(vp.Program(robot, start=start, name="one").movej(out))
+        arm.run(vp.Program(robot, start=out, name="two").movej(start))
+"""
+
+
+def test_a_log_that_cannot_be_written_is_told_and_costs_no_other(tmp_path):
+    done = _command("run", write(tmp_path / "job.py", RUNS_TWICE))
+    assert done.returncode == 1
+    assert "lost out/job_one" in done.stderr
+    assert "Traceback" not in done.stderr
+    assert "one: finished" in done.stdout
+    assert "two: finished" in done.stdout
+    out = tmp_path / "out"
+    assert (out / "job_one.csv").is_file()
+    assert (out / "job_two.npz").is_file()
+    assert (out / "job_two_joints.png").is_file()
+
+
+def test_a_reader_that_leaves_costs_no_log(tmp_path):
+    path = write(tmp_path / "job.py", name="p", target=GOOD)
+    command = [sys.executable, "-m", "viapoint.cli", "run", path]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as process:
+        assert process.stdout is not None
+        process.stdout.close()
+        process.wait(timeout=120)
+    names = {file.suffix for file in (tmp_path / "out").iterdir()}
+    assert names == {".csv", ".npz", ".png"}
+
+
+def test_a_terminal_without_letters_gets_a_report_all_the_same(tmp_path):
+    done = subprocess.run(
+        [
+            sys.executable,
+            "-m",
+            "viapoint.cli",
+            "check",
+            write(tmp_path / "j.py", name="µ", target=GOOD),
+        ],
+        capture_output=True,
+        check=False,
+        timeout=120,
+        env={**os.environ, "PYTHONIOENCODING": "ascii"},
+    )
+    assert done.returncode == 0, done.stderr
+    assert rb"\xb5" in done.stdout
+
+
 def test_version():
     done = _command("--version")
     assert done.stdout.strip() == vp.__version__
 
 
-@pytest.mark.parametrize("signum", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("signum", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_signal_stops_the_run_on_its_path_and_keeps_its_log(tmp_path, signum):
     text = """
         import viapoint as vp

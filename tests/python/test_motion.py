@@ -241,6 +241,8 @@ def test_simulating_no_program_is_refused(program):
 def test_knots_of_a_name_are_refused(puma, abc):
     with pytest.raises(errors.BadArgumentError, match="load_robot"):
         vp.insert_knots("puma560", puma.fk(abc["A"]), puma.fk(abc["B"]))
+    with pytest.raises(errors.BadArgumentError, match="position is 1e-15"):
+        vp.insert_knots(puma, puma.fk(abc["A"]), puma.fk(abc["B"]), position=1e-15)
 
 
 def test_corners_tell_what_became_of_the_zone(puma, abc):

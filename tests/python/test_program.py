@@ -108,10 +108,17 @@ def test_a_zone_larger_than_its_legs_is_shrunk_and_said(puma, abc):
     assert motion.corners[0].reason
 
 
-def test_a_program_that_goes_nowhere_is_refused(puma, abc):
-    report = vp.Program(puma, start=abc["A"]).movej(abc["A"]).check()
-    assert {p.code for p in report} == {"zero_length", "empty_program"}
-    assert not report.ok
+def test_a_program_that_goes_home_from_there_rests_and_says_so(puma, abc):
+    program = vp.Program(puma, start=abc["A"]).movej(abc["A"])
+    report = program.check()
+    assert [p.code for p in report] == ["zero_length"]
+    assert report.ok
+    motion = program.plan()
+    assert motion.duration == 0.002
+    np.testing.assert_array_equal(motion.sample(0.001).q, np.tile(abc["A"], (3, 1)))
+    with vp.connect("sim://puma560", start=abc["A"]) as arm:
+        assert arm.run(program).state == "finished"
+        np.testing.assert_array_equal(arm.setpoint, abc["A"])
 
 
 def test_a_move_to_where_the_arm_is_among_others_is_a_warning(puma, abc):

@@ -122,3 +122,31 @@ def test_a_closed_arm_refuses(motion):
 def test_a_bad_cycle_is_refused(cycle):
     with pytest.raises(errors.BadArgumentError, match="cycle"):
         vp.connect("sim://puma560", cycle=cycle)
+
+
+def test_a_script_that_jogs_until_a_limit_is_met_comes_to_its_end():
+    with vp.connect("sim://two_link") as arm:
+        limit = arm.robot.limits.position_max[0]
+        for _ in range(1000):
+            arm.jog([1.0, 0.0])
+            if arm.jog_block:
+                break
+        assert arm.jog_block == "joint 1 is at its position limit"
+        assert abs(arm.setpoint[0] - limit) < 1e-9
+        arm.jog([-1.0, 0.0])
+        assert arm.jogging
+        with pytest.raises(errors.BusyError, match="jogged"):
+            arm.run(vp.Program(arm.robot, start=arm.setpoint).movej([0.1, 0.1]))
+        assert polled(lambda: not arm.jogging)
+        assert arm.setpoint[0] < limit - 0.1
+        job = arm.run(vp.Program(arm.robot, start=arm.setpoint).movej([0.1, 0.1]))
+        assert job.state == "finished"
+        arm.jog([0.0, 0.5])
+        assert polled(lambda: not arm.jogging)
+        assert arm.setpoint[0] == pytest.approx(0.1, abs=1e-12)
+        assert arm.setpoint[1] > 0.15
+
+
+def test_a_jog_beyond_the_velocity_limit_is_refused_as_on_an_arm(arm):
+    with pytest.raises(errors.VelocityLimitError, match="joint 1"):
+        arm.jog([1e9] * 6)

@@ -36,15 +36,14 @@ class Walk {
       const Step step = in_base(program_.steps[static_cast<size_t>(step_)], frame_);
       std::visit(*this, step.what);
     }
-    if (itinerary_.items.empty() && itinerary_.report.ok()) {
+    if (program_.steps.empty()) {
       Problem problem;
       problem.code = ErrorCode::kEmptyProgram;
-      problem.message =
-          program_.steps.empty()
-              ? "the program does nothing: it has no move, wait or output"
-              : "the program does nothing: its moves go nowhere, the arm is there already";
+      problem.message = "the program does nothing: it has no move, wait or output";
       problem.ways_out = {"add a move, e.g. movej(q)"};
       itinerary_.report.problems.push_back(std::move(problem));
+    } else if (itinerary_.items.empty() && itinerary_.report.ok()) {
+      itinerary_.items.emplace_back(Dwell{step_ - 1, kRestInstead});
     }
     return std::move(itinerary_);
   }

@@ -18,6 +18,9 @@ struct Dwell {
 };
 /// A shorter wait is a stop and nothing else [s].
 inline constexpr double kShortestWait = 1e-9;
+/// How long a program rests that only asks for where the arm is already, as when it goes home from
+/// there [s].
+inline constexpr double kRestInstead = 2e-3;
 
 struct Output {
   int step = 0;

@@ -12,6 +12,7 @@
 #include "realtime/realtime_rights.hpp"
 #include "viapoint/core/error.hpp"
 #include "viapoint/core/number_text.hpp"
+#include "viapoint/realtime/virtual_jog.hpp"
 
 namespace viapoint {
 namespace {
@@ -229,17 +230,7 @@ void ControllerLoop::jog(const JointVector& velocity) {
 bool ControllerLoop::jogging() const { return impl_->jogs(); }
 
 std::string ControllerLoop::jog_block() const {
-  const JogBlock block = impl_->channels.jog_block.load(std::memory_order_relaxed);
-  const std::string index = std::to_string(block.index + 1);
-  switch (block.kind) {
-    case JogBlock::Kind::kNone:
-      break;
-    case JogBlock::Kind::kPositionLimit:
-      return "joint " + index + " is at its position limit";
-    case JogBlock::Kind::kCouplingLimit:
-      return "the arm has stopped before its coupled limit " + index;
-  }
-  return {};
+  return text_of(impl_->channels.jog_block.load(std::memory_order_relaxed));
 }
 
 void ControllerLoop::set_override(double share) {

@@ -42,6 +42,7 @@ __all__: list[str] = [
     "TcpCalibration",
     "ToolCalibration",
     "VelocityEllipsoid",
+    "VirtualJog",
     "admit",
     "builtin_robots",
     "calibrate_tcp",
@@ -1078,6 +1079,28 @@ class ControllerLoop:
     def position(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
     @property
     def shortcomings(self) -> list[str]: ...
+
+class VirtualJog:
+    """
+    Hold-to-run in virtual time.
+    """
+    def __init__(
+        self,
+        robot: RobotModel,
+        start: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        *,
+        cycle: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> None: ...
+    def jog(
+        self, velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
+    ) -> None: ...
+    def pass_cycles(self, count: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    @property
+    def jog_block(self) -> str: ...
+    @property
+    def jogging(self) -> bool: ...
+    @property
+    def position(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
 
 def admit(
     motion: PlannedMotion,
