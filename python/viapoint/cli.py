@@ -17,7 +17,6 @@ from typing import Annotated
 import typer
 from rich.console import Console
 from rich.markup import escape
-from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
 from . import _core, _session
@@ -26,6 +25,7 @@ from ._job import Job
 from ._motion import Motion
 from ._outcome import file_stem, motion_tables, run_tables, unused, write_pictures, write_run
 from ._program import Program
+from ._recorder import ProgressRecorder, Recorder
 from ._report import Report
 from ._robot import Robot, load_robot
 from ._robot_check import findings, joint_table, remarks
@@ -50,109 +50,10 @@ RobotFile = Annotated[
 ]
 
 
-class Recorder(_session.Session):
-    """Collects what a script plans and runs.
-
-    Attributes
-    ----------
-    motions : list of Motion
-        Everything planned, in order.
-    runs : list of Job
-        Everything run, in order.
-    refusals : list of (Program, MotionError)
-        Everything that could not be planned.
-    checks : list of (Program, Report)
-        Everything the script checked itself.
-    """
-
-    def __init__(self, virtual: bool) -> None:
-        self.virtual = virtual
-        self.ended_by: MotionError | None = None
-        self.motions: list[Motion] = []
-        self.runs: list[Job] = []
-        self.refusals: list[tuple[Program, MotionError]] = []
-        self.checks: list[tuple[Program, Report]] = []
-
-    def planned(self, motion: Motion) -> None:
-        """Keep the motion."""
-        self.motions.append(motion)
-        self.checks.append((motion.program, motion.report))
-
-    def refused(self, program: Program, error: MotionError) -> None:
-        """Keep what was refused, and why."""
-        self.refusals.append((program, error))
-        self.checks.append((program, Report([error.problem])))
-
-    def checked(self, program: Program, report: Report) -> None:
-        """Keep the report."""
-        self.checks.append((program, report))
-
-    def started(self, motion: Motion, job: Job) -> None:
-        """Keep the run."""
-        self.runs.append(job)
-
-    @property
-    def chosen(self) -> list[Motion]:
-        """The motions that were run; where none was, all that were planned."""
-        if self.runs:
-            return [job.motion for job in self.runs]
-        latest = {id(motion.program): motion for motion in self.motions}
-        return list(latest.values())
-
-    @property
-    def programs(self) -> list[Program]:
-        """Every program that was checked, planned or refused, once each."""
-        return list({id(program): program for program, _ in self.checks}.values())
-
-    def report_of(self, program: Program) -> Report:
-        """Return what the script last heard of a program; where it was refused, all of it."""
-        reports = [report for checked, report in self.checks if checked is program]
-        if any(refused is program for refused, _ in self.refusals):
-            whole = program.check()
-            return reports[-1] if whole.ok else whole
-        return reports[-1]
-
-
-class ProgressRecorder(Recorder):
-    """Draws a progress bar, too."""
-
-    def __init__(self) -> None:
-        super().__init__(virtual=False)
-        self._bar: Progress | None = None
-        self._tasks: dict[int, TaskID] = {}
-
-    def waiting(self, job: Job) -> None:
-        """Draw how far the job is."""
-        if self._bar is None:
-            self._bar = Progress(
-                TextColumn("{task.description}"),
-                BarColumn(bar_width=40),
-                TextColumn("{task.completed:6.3f} of {task.total:.3f} s"),
-                TimeElapsedColumn(),
-                console=console,
-            )
-            self._bar.start()
-        if id(job) not in self._tasks:
-            self._tasks[id(job)] = self._bar.add_task(
-                escape(job.motion.program.name), total=job.duration
-            )
-        self._bar.update(self._tasks[id(job)], completed=job.nominal_time)
-
-    def ended(self, job: Job) -> None:
-        """Leave the bar where the job ended."""
-        self.close()
-
-    def close(self) -> None:
-        """Give the terminal back."""
-        if self._bar is not None:
-            self._bar.stop()
-        self._bar, self._tasks = None, {}
-
-
 @app.command()
 def run(script: Script, out: Folder = Path("out"), robot: RobotFile = None) -> None:
     """Run a script; then show its figures and write its logs and pictures."""
-    recorder = ProgressRecorder()
+    recorder = ProgressRecorder(console)
     try:
         with _reported(recorder), _signals_as_ctrl_c():
             _require_writable(out)
