@@ -48,8 +48,7 @@ void for_each_part(const StateMotion& motion, const AxisMove& move, Visit visit)
     begin = end;
   }
   if (motion.duration > move.total) {
-    visit(move.total, motion.duration,
-          cubic(move.after_end(0.0), motion.duration - move.total));
+    visit(move.total, motion.duration, cubic(move.after_end(0.0), motion.duration - move.total));
   }
 }
 
