@@ -67,8 +67,8 @@ def motion_tables(motion: Motion) -> list[Table]:
     return [table, _share_table(motion)]
 
 
-def write_run(job: Job, folder: Path, stem: str) -> Iterator[Path]:
-    """Write the log (CSV and npz) and the pictures of what was executed, one at a time."""
+def write_log(job: Job, folder: Path, stem: str) -> Iterator[Path]:
+    """Write the log of what was executed (CSV and npz), one at a time."""
     with writing(folder):
         folder.mkdir(parents=True, exist_ok=True)
     log = job.log
@@ -76,7 +76,11 @@ def write_run(job: Job, folder: Path, stem: str) -> Iterator[Path]:
     yield folder / f"{stem}.csv"
     log.save_npz(folder / f"{stem}.npz")
     yield folder / f"{stem}.npz"
-    samples = log.samples
+
+
+def write_run_pictures(job: Job, folder: Path, stem: str) -> Iterator[Path]:
+    """Write the pictures of what was executed, one at a time."""
+    samples = job.log.samples
     for what in drawings_for(job.motion):
         picture = folder / f"{stem}_{what}.png"
         save_figure(DRAWINGS[what](samples, job.motion), picture)

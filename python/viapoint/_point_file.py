@@ -111,7 +111,10 @@ def _frame_in(path: Path, entry: dict[str, Any], place: str) -> Frame | None:
         _require_known(path, frame, place, _FRAME_MEMBERS)
     if not _only_numbers(frame["pose"]):
         raise _damaged(path, f"{place}pose must hold numbers only")
-    return Frame(frame["pose"], frame["name"])
+    name = frame["name"]
+    if not isinstance(name, str) or not name or not is_text(name):
+        raise _damaged(path, f"{place}name is {name!r}, which is no name")
+    return Frame(frame["pose"], name)
 
 
 def _members(pairs: list[tuple[str, Any]]) -> dict[str, Any]:

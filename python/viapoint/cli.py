@@ -23,7 +23,15 @@ from . import _core, _session
 from ._arguments import writing
 from ._job import Job
 from ._motion import Motion
-from ._outcome import file_stem, motion_tables, run_tables, unused, write_pictures, write_run
+from ._outcome import (
+    file_stem,
+    motion_tables,
+    run_tables,
+    unused,
+    write_log,
+    write_pictures,
+    write_run_pictures,
+)
 from ._program import Program
 from ._recorder import ProgressRecorder, Recorder
 from ._report import Report
@@ -59,8 +67,10 @@ def run(script: Script, out: Folder = Path("out"), robot: RobotFile = None) -> N
             _require_writable(out)
             _execute(script, recorder, robot)
     finally:
-        recorder.close()
-        lost = _keep_runs(recorder.runs, out, script)
+        try:
+            recorder.close()
+        finally:  # a terminal that is gone cannot be given back
+            lost = _keep_runs(recorder.runs, out, script)
     if not recorder.runs:
         console.print("The script ran nothing: no [bold]arm.run(program)[/bold] was reached.")
     if lost:
@@ -245,33 +255,32 @@ def _save_own_robots(motions: list[Motion], out: Path) -> list[Path]:
 def _keep_runs(runs: list[Job], out: Path, script: Path) -> bool:
     """Write what was run, then show it, so that nothing said can cost a log; True if one is lost.
 
-    A run whose files cannot be written does not keep the others from being written.
+    What of one run cannot be written does not keep the rest from being written.
     """
     taken: set[str] = set()
-    kept: list[tuple[Job, list[Path]]] = []
+    kept = [(job, file_stem(script, job.motion, taken)) for job in runs]
+    files: dict[str, list[Path]] = {stem: [] for _, stem in kept}
     lost: list[str] = []
-    for job in runs:
-        stem = file_stem(script, job.motion, taken)
-        files: list[Path] = []
-        try:
-            files.extend(write_run(job, out, stem))
-        except (OSError, MotionError) as error:
-            lost.append(f"{out / stem}: {getattr(error, 'strerror', None) or error}")
-        kept.append((job, files))
+    for write in (write_log, write_run_pictures):  # every log before the first picture
+        for job, stem in kept:
+            try:
+                files[stem].extend(write(job, out, stem))
+            except Exception as error:  # noqa: BLE001  # whatever one of them lacks, the others are written
+                lost.append(f"{out / stem}: {getattr(error, 'strerror', None) or error}")
     for text in lost:
         errors.print(f"[bold red]lost[/bold red] {escape(text)}", soft_wrap=True)
-    for job, files in kept:
+    for job, stem in kept:
         console.print(*run_tables(job))
-        _say_files(files)
+        _say_files(files[stem])
     return bool(lost)
 
 
 def _require_writable(folder: Path) -> None:
     """Refuse, before anything moves, a folder that cannot be made or written into: by trying."""
     there = folder
-    while not there.exists() and there != there.parent:
-        there = there.parent
     try:
+        while not there.exists() and there != there.parent:
+            there = there.parent
         with tempfile.TemporaryDirectory(dir=there):
             pass
     except OSError as error:

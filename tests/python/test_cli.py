@@ -278,6 +278,18 @@ def test_a_log_that_cannot_be_written_is_told_and_costs_no_other(tmp_path):
     assert (out / "job_two_joints.png").is_file()
 
 
+def test_a_picture_that_cannot_be_drawn_costs_no_log(tmp_path):
+    text = RUNS_TWICE.replace("import pathlib", "import pathlib\n    from viapoint import _plots")
+    text += "    _plots.DRAWINGS['joints'] = lambda samples, motion: 1 / 0\n"
+    text = text.replace('pathlib.Path("out/job_one.npz")', 'pathlib.Path("out/elsewhere")')
+    done = _command("run", write(tmp_path / "job.py", text))
+    assert done.returncode == 1
+    assert done.stderr.count("lost out/job_") == 2
+    assert "one: finished" in done.stdout
+    files = {file.name for file in (tmp_path / "out").iterdir()}
+    assert files >= {f"job_{run}.{kind}" for run in ("one", "two") for kind in ("csv", "npz")}
+
+
 def test_a_reader_that_leaves_costs_no_log(tmp_path):
     path = write(tmp_path / "job.py", name="p", target=GOOD)
     command = [sys.executable, "-m", "viapoint.cli", "run", path]

@@ -220,6 +220,9 @@ DAMAGES = {
     "unknown key of a frame": lambda text: with_first(
         text, frame={"name": "t", "pose": np.eye(4).tolist(), "unit": "mm"}
     ),
+    "a frame without a name": lambda text: with_first(
+        text, frame={"name": "", "pose": np.eye(4).tolist()}
+    ),
     "true in a frame": lambda text: with_first(
         text, frame={"name": "t", "pose": [[True, 0, 0, 0], *np.eye(4).tolist()[1:]]}
     ),
@@ -243,6 +246,7 @@ def with_first(text, **members):
         ("points twice", 'the key "points" is there twice'),
         ("unknown key", 'unknown key "foo"; known are format, version'),
         ("unknown key of a point", r'points\[0\]: unknown key "speed"; known are name, q, frame'),
+        ("a frame without a name", r"points\[0\]\.frame: name is ''"),
         ("unknown key of a frame", r'points\[0\]\.frame: unknown key "unit"'),
         ("true for a number", r"points\[0\]: q must hold numbers only"),
         ("a number of 5000 digits", "digits"),

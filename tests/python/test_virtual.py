@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import viapoint as vp
-from viapoint import _session, errors
+from viapoint import _core, _session, errors
 
 
 class _Virtual(_session.Session):
@@ -150,3 +150,9 @@ def test_a_script_that_jogs_until_a_limit_is_met_comes_to_its_end():
 def test_a_jog_beyond_the_velocity_limit_is_refused_as_on_an_arm(arm):
     with pytest.raises(errors.VelocityLimitError, match="joint 1"):
         arm.jog([1e9] * 6)
+
+
+def test_a_jog_in_virtual_time_needs_a_start_and_a_cycle(puma):
+    for start, cycle in (([0.0] * 6, 0.0), ([np.nan] * 6, 0.002)):
+        with pytest.raises(errors.BadArgumentError):
+            _core.VirtualJog(puma._core, start, cycle=cycle)

@@ -43,7 +43,10 @@ constexpr double kMillimetres = 1e3;
 void require_poses(std::span<const Pose> poses, const char* name) {
   for (size_t i = 0; i < poses.size(); ++i) {
     const Matrix3d off = poses[i].linear().transpose() * poses[i].linear() - Matrix3d::Identity();
-    if (poses[i].matrix().allFinite() && off.cwiseAbs().maxCoeff() < 1e-6) continue;
+    if (poses[i].matrix().allFinite() && off.cwiseAbs().maxCoeff() < 1e-6 &&
+        poses[i].linear().determinant() > 0.0) {
+      continue;
+    }
     throw MotionError(ErrorCode::kBadArgument,
                       text("%s %zu is no pose: not finite, or no rotation", name, i + 1));
   }
@@ -129,6 +132,27 @@ double require_angle(const Vector3d& a, const Vector3d& b, const char* what, con
   refuse(text("%s: they are %.3g° from one line; it must be at least %.3g°", what,
               off_line / kDegree, kLeastAngle / kDegree),
          off_line, kLeastAngle, way_out);
+}
+
+/// Refuses points too near to one another, or to one line, to tell how a frame is turned.
+void require_spread(std::span<const Vector3d> points, const Vector3d& mean, const char* which) {
+  Matrix3d spread = Matrix3d::Zero();
+  for (const Vector3d& point : points) {
+    spread += (point - mean) * (point - mean).transpose() / static_cast<double>(points.size());
+  }
+  // How far the points are from their best line, beside how far along it.
+  const Vector3d extent = Eigen::JacobiSVD<Matrix3d>(spread).singularValues().cwiseSqrt();
+  if (!(extent[0] >= kLeastTravel)) {
+    refuse(text("the %s points are %.3g mm apart; it must be at least %g mm", which,
+                kMillimetres * extent[0], kMillimetres * kLeastTravel),
+           extent[0], kLeastTravel, "touch points farther apart");
+  }
+  const double off_line = std::atan2(extent[1], extent[0]);
+  if (!(off_line >= kLeastAngle)) {
+    refuse(text("the %s points lie on one line: they are %.3g° from it; it must be at least %.3g°",
+                which, off_line / kDegree, kLeastAngle / kDegree),
+           off_line, kLeastAngle, "touch a point off that line");
+  }
 }
 
 }  // namespace
@@ -240,26 +264,11 @@ FrameFit frame_from_known_points(std::span<const Vector3d> known,
     mean_touched += touched[i] / n;
   }
   Matrix3d covariance = Matrix3d::Zero();
-  Matrix3d spread = Matrix3d::Zero();
   for (size_t i = 0; i < known.size(); ++i) {
-    const Vector3d of_known = known[i] - mean_known;
-    covariance += (touched[i] - mean_touched) * of_known.transpose();
-    spread += of_known * of_known.transpose();
+    covariance += (touched[i] - mean_touched) * (known[i] - mean_known).transpose();
   }
-  // How far the known points are from their best line, beside how far along it.
-  const Vector3d extent = Eigen::JacobiSVD<Matrix3d>(spread / n).singularValues().cwiseSqrt();
-  if (extent[0] < kLeastTravel) {
-    refuse(text("the known points are %.3g mm apart; it must be at least %g mm",
-                kMillimetres * extent[0], kMillimetres * kLeastTravel),
-           extent[0], kLeastTravel, "touch points farther apart");
-  }
-  const double off_line = std::atan2(extent[1], extent[0]);
-  if (off_line < kLeastAngle) {
-    refuse(text("the known points lie on one line: they are %.3g° from it; it must be at least "
-                "%.3g°",
-                off_line / kDegree, kLeastAngle / kDegree),
-           off_line, kLeastAngle, "touch a point off that line");
-  }
+  require_spread(known, mean_known, "known");
+  require_spread(touched, mean_touched, "touched");
   const Eigen::JacobiSVD<Matrix3d> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Vector3d sign = Vector3d::Ones();
   if ((svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0) sign[2] = -1.0;

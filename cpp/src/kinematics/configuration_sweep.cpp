@@ -18,7 +18,6 @@ constexpr double kHopeless = -1.0;  ///< summits below this are not climbed [rad
 constexpr int kSteps = 40;
 constexpr int kHalvings = 20;
 constexpr double kResolution = 1e-6;  ///< of the parameter [rad]
-constexpr size_t kMostTurns = 64;     ///< combinations a branch is looked at in
 
 }  // namespace
 
@@ -29,7 +28,7 @@ ConfigurationSweep::ConfigurationSweep(const ForwardKinematics& forward, const J
     windows_.emplace_back();
     const double low = limits.position_min[i];
     const double high = limits.position_max[i];
-    if (slides_.back() || !std::isfinite(low) || !std::isfinite(high)) continue;
+    if (slides_.back() || high - low >= kTurn) continue;  // open limits, too
     for (double k = std::ceil((low - kPi) / kTurn); k * kTurn - kPi < high; k += 1.0) {
       const double from = std::max(low, k * kTurn - kPi);
       const double to = std::min(high, k * kTurn + kPi);
@@ -50,9 +49,11 @@ ConfigurationSweep::Place ConfigurationSweep::place_of(const JointVector& branch
     const double low = limits_.position_min[i];
     const double high = limits_.position_max[i];
     double& q = place.q[i];
-    if (windows_[k].empty()) {
-      if (!slides_[k]) q = wrap_near(q, reference[i]);
+    if (slides_[k]) {
       place.room = std::min({place.room, q - low, high - q});
+    } else if (windows_[k].empty()) {  // any angle has a turn within the limits: no end to run into
+      q = wrap_near(q, std::max(low + kPi, std::min(reference[i], high - kPi)));
+      q = std::max(low, std::min(q, high));
     } else {
       const Window& window = windows_[k][static_cast<size_t>(turns[k])];
       const double off = std::remainder(q - window.middle, kTurn);
@@ -75,7 +76,7 @@ template <typename Visit>
 void ConfigurationSweep::each_turn(const JointVector& branch, const JointVector& reference,
                                    Visit&& visit) const {
   std::vector<int> turns(windows_.size(), 0);
-  for (size_t count = 0; count < kMostTurns; ++count) {
+  while (true) {
     visit(turns, place_of(branch, reference, turns));
     size_t joint = 0;
     while (joint < turns.size() && ++turns[joint] >= static_cast<int>(windows_[joint].size())) {

@@ -29,7 +29,8 @@ class ConfigurationSweep {
 
   ConfigurationSweep(const ForwardKinematics& forward, const JointLimits& limits);
 
-  /// The roomiest answer of each configuration. @param count of places between `low` and `high`
+  /// The roomiest answer of each configuration; of joints with a whole turn or more within their
+  /// limits it has the turn nearest to `reference`, and not the others. @param count of places between `low` and `high`
   [[nodiscard]] std::vector<JointVector> find(double low, double high, int count,
                                               const JointVector& reference, const Solve& solve,
                                               const Signs& signs, const Accept& accept) const;
@@ -59,7 +60,8 @@ class ConfigurationSweep {
                                const std::vector<int>& turns) const;
 
   JointLimits limits_;
-  std::vector<std::vector<Window>> windows_;  ///< a joint; none where its limits are open
+  /// Of each joint: two at most where its limits leave less than a turn, or else none.
+  std::vector<std::vector<Window>> windows_;
   std::vector<bool> slides_;
 };
 

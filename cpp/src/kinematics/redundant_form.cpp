@@ -188,7 +188,8 @@ ArmSides LastJointForm::sides(const JointVector& q) const {
 std::pair<double, double> LastJointForm::range(const JointLimits& limits) const {
   const double low = limits.position_min[6];
   const double high = limits.position_max[6];
-  return {std::isfinite(low) ? low : -kPi, std::isfinite(high) ? high : kPi};
+  if (!(high - low < 2.0 * kPi)) return {-kPi, kPi};  // every angle, on some turn
+  return {low, high};
 }
 
 std::unique_ptr<const RedundantForm> recognise_redundant_form(const ForwardKinematics& forward) {

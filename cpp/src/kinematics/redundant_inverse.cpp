@@ -223,7 +223,11 @@ std::vector<JointVector> RedundantInverse::all(const InverseTask& task,
   const auto accept = [&](const JointVector& q) { return confirmed(task, q); };
   std::vector<JointVector> solutions;
   for (const int count : {kSweep, kFineScan}) {
-    solutions = sweep_.find(low, high, count, reference, solve, signs, accept);
+    for (const JointVector& q : sweep_.find(low, high, count, reference, solve, signs, accept)) {
+      for (const JointVector& turn : turns_.all(q, reference)) {
+        if (confirmed(task, turn)) solutions.push_back(turn);
+      }
+    }
     if (!solutions.empty()) break;
   }
   if (solutions.empty()) {

@@ -1,5 +1,7 @@
 #include "viapoint/realtime/virtual_jog.hpp"
 
+#include <algorithm>
+
 #include "viapoint/core/error.hpp"
 #include "viapoint/realtime/controller_loop.hpp"
 
@@ -20,11 +22,13 @@ std::string text_of(const JogBlock& block) {
 
 VirtualJog::VirtualJog(const JointLimits& limits, const JointVector& start,
                        std::chrono::nanoseconds cycle)
-    : limits_(limits), position_(start), interpolator_(limits, cycle, start) {
-  if (start.size() != limits.joints() || cycle.count() <= 0) {
-    throw MotionError(ErrorCode::kBadArgument, "a jog starts at " +
-                                                   std::to_string(limits.joints()) +
-                                                   " joints, and its cycle is longer than nothing");
+    : limits_(limits),
+      position_(start),
+      interpolator_(limits, std::max(cycle, std::chrono::nanoseconds(1)), start) {
+  if (start.size() != limits.joints() || !start.allFinite() || cycle.count() <= 0) {
+    throw MotionError(ErrorCode::kBadArgument,
+                      "a jog starts at " + std::to_string(limits.joints()) +
+                          " finite joints, and its cycle is longer than nothing");
   }
 }
 

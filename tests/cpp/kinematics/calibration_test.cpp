@@ -282,6 +282,12 @@ TEST(Calibration, RefusesKnownPointsThatTellNoFrame) {
   const std::vector<Vector3d> same(3, Vector3d(0.1, 0.0, 0.0));
   EXPECT_EQ(problem_of([&] { (void)frame_from_known_points(same, same); }).code,
             ErrorCode::kDegeneratePoints);
+  const std::vector<Vector3d> good = {{0.0, 0.0, 0.0}, {0.3, 0.0, 0.0}, {0.0, 0.3, 0.0}};
+  for (const auto& touched : {same, line}) {
+    const Problem told = problem_of([&] { (void)frame_from_known_points(good, touched); });
+    EXPECT_EQ(told.code, ErrorCode::kDegeneratePoints);
+    EXPECT_NE(told.message.find("touched"), std::string::npos) << told.message;
+  }
   EXPECT_EQ(problem_of([&] { (void)frame_from_known_points(line, std::span(line).first(2)); }).code,
             ErrorCode::kBadArgument);
 }

@@ -95,6 +95,34 @@ TEST_P(SevenJoints, GiveOneSolutionForEachConfiguration) {
   EXPECT_EQ(same_sides, kProblems);
 }
 
+TEST_P(SevenJoints, GiveTheNearTurnsHoweverWideTheLimits) {
+  for (const double limit : {2.0 * kPi, 50.0, 1e9}) {
+    RobotDescription description = load_description(GetParam());
+    description.limits.position_min.setConstant(-limit);
+    description.limits.position_max.setConstant(limit);
+    const RobotPtr robot = RobotModel::make(description);
+    std::mt19937_64 generator(87);
+    std::uniform_real_distribution<double> angle(-3.0, 3.0);
+    for (int problem = 0; problem < 20; ++problem) {
+      SCOPED_TRACE(testing::Message() << "limits " << limit << ", problem " << problem);
+      JointVector q(7);
+      for (int i = 0; i < 7; ++i) q[i] = angle(generator);
+      const auto all = robot->inverse().solve_all(robot->fk(q));
+      const Configuration made_by = robot->inverse().configuration(q);
+      bool found = false;
+      for (const JointVector& each : all) {
+        ASSERT_LT(pose_distance(robot->fk(each), robot->fk(q)), 2e-9);
+        const Configuration side = robot->inverse().configuration(each);
+        found = found || (each.lpNorm<Eigen::Infinity>() <= kPi + 1e-9 &&
+                          side.shoulder == made_by.shoulder && side.elbow == made_by.elbow &&
+                          side.wrist == made_by.wrist);
+      }
+      ASSERT_TRUE(found);
+      ASSERT_LT(all.size(), 10'000U);
+    }
+  }
+}
+
 TEST_P(SevenJoints, SolveSingularPoses) {
   const RobotPtr robot = arm(GetParam());
   std::mt19937_64 generator(83);

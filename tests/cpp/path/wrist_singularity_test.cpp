@@ -239,7 +239,7 @@ class WildCurve final : public TaskCurve {
 
 TEST(WristSingularity, RefusesACurveThatTakesEndlessWork) {
   const ForwardKinematics arm = testing::puma560();
-  const JointVector start = testing::joints_a();
+  const JointVector& start = testing::joints_a();
   const Pose from = arm.pose(start);
   const LineCurve line =
       LineCurve::fixed_orientation(from, from.translation() + Eigen::Vector3d(0.0, 0.05, 0.05));

@@ -30,8 +30,10 @@ class RateLimits {
 
   /// True where every limit is kept, for certain, anywhere in the stretch.
   [[nodiscard]] bool kept(const RateStretch& stretch) const noexcept VIAPOINT_NONBLOCKING;
-  /// Narrows γ to what certainly keeps every limit for `time` [s] from a start with the slope
-  /// stretch.slope.low; stretch.rate has to hold the rates of that time. False where there is none.
+  /// Narrows γ to what may keep every limit for `time` [s] from a start with the slope
+  /// stretch.slope.low: those of the jerk all the while, that of the acceleration at the end, which
+  /// at the start no γ changes. kept() has the last word. stretch.rate has to hold the rates of
+  /// that time. False where there is none.
   [[nodiscard]] bool room(const RateStretch& stretch, double time,
                           Range& curvature) const noexcept VIAPOINT_NONBLOCKING;
 
