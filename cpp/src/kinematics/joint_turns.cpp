@@ -166,16 +166,17 @@ JointTurns::Range JointTurns::range(int joint, double angle, double reference) c
     double value = turns ? wrap_near(angle, reference) : angle;
     if (turns && value > high + kSnap) value -= kTurn * std::ceil((value - high - kSnap) / kTurn);
     if (turns && value < low - kSnap) value += kTurn * std::ceil((low - kSnap - value) / kTurn);
-    return {value, distance_to(value, low, high) <= kSnap ? 1 : 0};
+    return {value, 0, distance_to(value, low, high) <= kSnap ? 1 : 0};
   }
   double first = angle + kTurn * std::ceil((low - kSnap - angle) / kTurn);
   double count = std::floor((high + kSnap - first) / kTurn) + 1.0;
   if (count > kMostTurns) {
-    const double ahead = std::round((reference - first) / kTurn) - 0.5 * kMostTurns;
-    first += kTurn * std::clamp(ahead, 0.0, count - kMostTurns);
-    count = kMostTurns;
+    // Those about the reference, counted from there: far out an angle loses digits.
+    constexpr int kKept = kMostTurns - 4;
+    constexpr double kHalf = 0.5 * kKept * kTurn + kPi;
+    return {wrap_near(angle, std::clamp(reference, low + kHalf, high - kHalf)), -kKept / 2, kKept};
   }
-  return {first, std::max(0, static_cast<int>(count))};
+  return {first, 0, std::max(0, static_cast<int>(count))};
 }
 
 template <typename Visit>
@@ -195,8 +196,8 @@ void JointTurns::each(const JointVector& branch, const JointVector& reference,
   while (combinations() > kMostTurns) {
     const auto most = std::max_element(
         ranges.begin(), end, [](const Range& a, const Range& b) { return a.count < b.count; });
-    const double middle = most->first + 0.5 * kTurn * (most->count - 1);
-    if (middle < reference[static_cast<int>(most - ranges.begin())]) most->first += kTurn;
+    const double middle = most->base + kTurn * (most->begin + 0.5 * (most->count - 1));
+    if (middle < reference[static_cast<int>(most - ranges.begin())]) ++most->begin;
     --most->count;
   }
 
@@ -205,8 +206,8 @@ void JointTurns::each(const JointVector& branch, const JointVector& reference,
     JointVector q(joints_);
     for (int i = 0; i < joints_; ++i) {
       const auto k = static_cast<size_t>(i);
-      q[i] = std::clamp(ranges[k].first + kTurn * digit[k], limits_.position_min[i],
-                        limits_.position_max[i]);
+      q[i] = std::clamp(ranges[k].base + kTurn * (ranges[k].begin + digit[k]),
+                        limits_.position_min[i], limits_.position_max[i]);
     }
     if (coupled(q)) visit(q);
     int place = 0;

@@ -53,9 +53,10 @@ class JointTurns {
   [[nodiscard]] LimitExcess excess(const JointVector& branch) const;
 
  private:
-  /// The turns of one joint within its limits: first, first + 2π, …
+  /// The turns of one joint within its limits: base + 2π k for `count` k from `begin` on.
   struct Range {
-    double first = 0.0;
+    double base = 0.0;
+    int begin = 0;
     int count = 0;
   };
   [[nodiscard]] Range range(int joint, double angle, double reference) const;

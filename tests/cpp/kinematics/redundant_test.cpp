@@ -96,17 +96,16 @@ TEST_P(SevenJoints, GiveOneSolutionForEachConfiguration) {
 }
 
 TEST_P(SevenJoints, GiveTheNearTurnsHoweverWideTheLimits) {
-  for (const double limit : {2.0 * kPi, 50.0, 1e9}) {
+  const RobotPtr own = arm(GetParam());
+  for (const auto& [limit, problems] : {std::pair{2.0 * kPi, 20}, {50.0, 2}, {1e9, 2}}) {
     RobotDescription description = load_description(GetParam());
     description.limits.position_min.setConstant(-limit);
     description.limits.position_max.setConstant(limit);
     const RobotPtr robot = RobotModel::make(description);
     std::mt19937_64 generator(87);
-    std::uniform_real_distribution<double> angle(-3.0, 3.0);
-    for (int problem = 0; problem < 20; ++problem) {
+    for (int problem = 0; problem < problems; ++problem) {
       SCOPED_TRACE(testing::Message() << "limits " << limit << ", problem " << problem);
-      JointVector q(7);
-      for (int i = 0; i < 7; ++i) q[i] = angle(generator);
+      const JointVector q = random_joints(*own, generator);
       const auto all = robot->inverse().solve_all(robot->fk(q));
       const Configuration made_by = robot->inverse().configuration(q);
       bool found = false;
@@ -118,7 +117,7 @@ TEST_P(SevenJoints, GiveTheNearTurnsHoweverWideTheLimits) {
                           side.wrist == made_by.wrist);
       }
       ASSERT_TRUE(found);
-      ASSERT_LT(all.size(), 10'000U);
+      ASSERT_LT(all.size(), 100'000U);  // of each branch 4096 turns at most
     }
   }
 }
