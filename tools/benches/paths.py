@@ -165,7 +165,7 @@ def acceleration_share(spline: Spline, s: Array, square_rate: Array, limits: Arr
 
 def run_toppra(spline: Spline, problem: Problem, cells: int) -> tuple[float, float, float]:
     """Return duration, seconds taken and the largest share of acceleration."""
-    import toppra  # type: ignore[import-not-found,unused-ignore]
+    import toppra  # type: ignore[import-not-found,import-untyped,unused-ignore]
     from toppra import algorithm, constraint
 
     toppra.setup_logging("ERROR")
@@ -206,11 +206,12 @@ def run_copp(spline: Spline, problem: Problem, cells: int) -> tuple[float, float
         robot.set_q(values[0], values[1], values[2], 0, dddq=values[3])
         robot.add_velocity_limits(v, -v, start_idx_s=0, length=len(s))
         robot.add_acceleration_limits(a, -a, start_idx_s=0, length=len(s))
-        second = copp.solver.topp2_ra.Problem(robot.constraints, (0, len(s) - 1), (0.0, 0.0))
-        start = copp.solver.topp2_ra.solve(second)
+        solver: Any = copp.solver
+        second = solver.topp2_ra.Problem(robot.constraints, (0, len(s) - 1), (0.0, 0.0))
+        start = solver.topp2_ra.solve(second)
         robot.add_jerk_limits(j, -j, start_idx_s=0, length=len(s))
-        third = copp.solver.topp3_socp.Problem(robot.constraints, start, num_stationary_max=1)
-        profile = copp.solver.topp3_socp.solve(third)
+        third = solver.topp3_socp.Problem(robot.constraints, start, num_stationary_max=1)
+        profile = solver.topp3_socp.solve(third)
         return float(copp.interpolation.s_to_t_topp3(s, profile)[0]), profile
 
     (duration, _), taken = timed(solve)
