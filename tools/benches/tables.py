@@ -10,9 +10,15 @@ def layout(value: str | float) -> str:
     return f"{value:d}" if isinstance(value, int) else f"{value:.4g}"
 
 
+def _columns(rows: list[Row]) -> list[str]:
+    """Every figure that any row has; a checksum is none."""
+    keys = dict.fromkeys(key for row in rows for key in row)
+    return [key for key in keys if key not in {"bench", "checksum"}]
+
+
 def table(rows: list[Row]) -> str:
     """Lay rows of one bench out as a table; a checksum is no figure and is left out."""
-    keys = [key for key in rows[0] if key not in {"bench", "checksum"}]
+    keys = _columns(rows)
     lines = [[key.replace("_", " ") for key in keys]]
     lines += [[layout(row.get(key, "")) for key in keys] for row in rows]
     widths = [max(len(line[column]) for line in lines) for column in range(len(keys))]
@@ -28,7 +34,7 @@ def table(rows: list[Row]) -> str:
 
 def markdown(rows: list[Row]) -> str:
     """Lay rows of one bench out as a Markdown table, to be pasted into a document."""
-    keys = [key for key in rows[0] if key not in {"bench", "checksum"}]
+    keys = _columns(rows)
     lines = [[key.replace("_", " ") for key in keys], ["---"] + ["--:"] * (len(keys) - 1)]
     lines += [[layout(row.get(key, "")) for key in keys] for row in rows]
     return "\n".join(f"| {' | '.join(line)} |" for line in lines)
