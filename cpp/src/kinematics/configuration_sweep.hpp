@@ -30,7 +30,8 @@ class ConfigurationSweep {
   ConfigurationSweep(const ForwardKinematics& forward, const JointLimits& limits);
 
   /// The roomiest answer of each configuration; of joints with a whole turn or more within their
-  /// limits it has the turn nearest to `reference`, and not the others. @param count of places between `low` and `high`
+  /// limits it has the turn nearest to `reference`, and not the others. @param count of places
+  /// between `low` and `high`
   [[nodiscard]] std::vector<JointVector> find(double low, double high, int count,
                                               const JointVector& reference, const Solve& solve,
                                               const Signs& signs, const Accept& accept) const;
