@@ -40,10 +40,18 @@ Range product(const Range& a, const Range& b) noexcept {
   return {a.low + b.low, a.high + b.high};
 }
 
-/// By how much a range sticks out of ±limit: above 0 where it does.
-[[gnu::always_inline]] inline Array2d excess(const PairRange& x, const Array2d& limit) noexcept {
-  return x.high.max(-x.low) - (1.0 + kRounding) * limit;
+/// 1 in the lanes whose range is within ±limit, 0 in the others: also where an end is not a number,
+/// which no comparison holds for (min and max would drop it).
+[[gnu::always_inline]] inline Array2d is_within(const PairRange& x, const Array2d& limit) noexcept {
+  const Array2d most = (1.0 + kRounding) * limit;
+  return (x.high <= most && -x.low <= most).cast<double>();
 }
+
+/// 0 where every end is finite, not a number elsewhere.
+[[gnu::always_inline]] inline Array2d doubt_of(const PairRange& x) noexcept {
+  return 0.0 * x.low + 0.0 * x.high;
+}
+double doubt_of(const Range& x) noexcept { return 0.0 * x.low + 0.0 * x.high; }
 
 /// What a limit leaves for `factor` times γ: -below <= factor γ <= above.
 struct Demand {
@@ -123,17 +131,19 @@ bool RateLimits::kept(const RateStretch& stretch) const noexcept VIAPOINT_NONBLO
   const Range square{rate.low * rate.low, rate.high * rate.high};
   const Range cube{square.low * rate.low, square.high * rate.high};
   const Range mixed = product(rate, {3.0 * stretch.slope.low, 3.0 * stretch.slope.high});
-  Array2d worst = Array2d::Constant(-1.0);
+  const double doubt = doubt_of(rate) + doubt_of(stretch.slope) + 0.0 * stretch.curvature;
+  Array2d is_kept = Array2d::Constant(1.0 + doubt);
   for (std::size_t p = 0; p < pairs_; ++p) {
     const PairRange& first = stretch.path.first.pair[p];
     const PairRange& second = stretch.path.second.pair[p];
+    const PairRange& third = stretch.path.third.pair[p];
     const PairRange acceleration = sum(scaled(second, square), product(first, stretch.slope));
-    const PairRange jerk = sum(scaled(stretch.path.third.pair[p], cube),
-                               sum(product(second, mixed), product(first, stretch.curvature)));
-    worst = worst.max(excess(acceleration, limits_[p].acceleration));
-    worst = worst.max(excess(jerk, limits_[p].jerk));
+    const PairRange jerk =
+        sum(scaled(third, cube), sum(product(second, mixed), product(first, stretch.curvature)));
+    is_kept *= is_within(acceleration, limits_[p].acceleration) * is_within(jerk, limits_[p].jerk);
+    is_kept += doubt_of(first) + doubt_of(second) + doubt_of(third);
   }
-  return worst.maxCoeff() <= 0.0;
+  return is_kept[0] == 1.0 && is_kept[1] == 1.0;
 }
 
 bool RateLimits::room(const RateStretch& stretch, double time,

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "realtime/random_motion.hpp"
@@ -109,6 +110,40 @@ TEST(RateLimits, OfSingleValuesItRefusesOnlyWhatBreaksALimit) {
   }
   EXPECT_GT(kept, 200);
   EXPECT_GT(refused, 200);
+}
+
+TEST(RateLimits, KeepNothingThatIsNotFinite) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  int planted = 0;
+  for (unsigned seed = 0; planted < 1000; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    Problem problem(seed, 0.2);
+    const RateLimits limits(problem.limits);
+    if (!limits.kept(problem.stretch)) continue;
+    for (const double poison : {kNan, kInfinity, -kInfinity}) {
+      const auto plant = [&](auto&& where) {
+        RateStretch stretch = problem.stretch;
+        where(stretch) = poison;
+        ASSERT_FALSE(limits.kept(stretch)) << poison;
+        ++planted;
+      };
+      for (int j = 0; j < problem.joints; ++j) {
+        const auto pair = static_cast<std::size_t>(j / 2);
+        plant([&](RateStretch& s) -> double& { return s.path.first.pair[pair].low[j % 2]; });
+        plant([&](RateStretch& s) -> double& { return s.path.first.pair[pair].high[j % 2]; });
+        plant([&](RateStretch& s) -> double& { return s.path.second.pair[pair].low[j % 2]; });
+        plant([&](RateStretch& s) -> double& { return s.path.second.pair[pair].high[j % 2]; });
+        plant([&](RateStretch& s) -> double& { return s.path.third.pair[pair].low[j % 2]; });
+        plant([&](RateStretch& s) -> double& { return s.path.third.pair[pair].high[j % 2]; });
+      }
+      plant([](RateStretch& s) -> double& { return s.rate.low; });
+      plant([](RateStretch& s) -> double& { return s.rate.high; });
+      plant([](RateStretch& s) -> double& { return s.slope.low; });
+      plant([](RateStretch& s) -> double& { return s.slope.high; });
+      plant([](RateStretch& s) -> double& { return s.curvature; });
+    }
+  }
 }
 
 /// The largest share over all joints at the start and, a `time` later, at the end of a push.
