@@ -10,7 +10,7 @@ import numpy as np
 from . import _core
 from ._arguments import ArrayLike, Vector, integer, numbers_of, pose, shown, vector
 from ._envelope import joint_envelope
-from ._kinematics import Kinematics
+from ._workspace import Workspace
 from .errors import (
     BadArgumentError,
     CouplingLimitError,
@@ -22,7 +22,7 @@ _SLACK = 1e-9
 """Joints this far outside a limit [rad or m] are at it, but for rounding."""
 
 
-class Robot(Kinematics):
+class Robot(Workspace):
     """An arm: chain, limits, forward and inverse kinematics. Immutable.
 
     Made by `load_robot` and `joint_robot`. Angles are in radians, lengths in metres; poses are

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <optional>
+#include <utility>
 
 #include "kinematics/closed_form.hpp"
 #include "kinematics/forward_walk.hpp"
@@ -80,5 +82,21 @@ void BranchInverse::each_share(const ClosedBranch& branch, const JointVector& he
   }
   if (!any) visit(branch.q);
 }
+
+/// With the form that finds the branches. @tparam Form ClosedForm or RedundantForm
+template <typename Form>
+class FormInverse : public BranchInverse {
+ public:
+  FormInverse(const ForwardKinematics& forward, const JointLimits& limits,
+              std::unique_ptr<const Form> form)
+      : BranchInverse(forward, limits), form_(std::move(form)) {}
+
+ protected:
+  [[nodiscard]] Configuration sides(const JointVector& q) const override {
+    return configuration_of(form_->sides(q));
+  }
+
+  std::unique_ptr<const Form> form_;
+};
 
 }  // namespace viapoint

@@ -17,7 +17,7 @@ bool undecided(const ClosedSolutions& found) {
 
 ClosedFormInverse::ClosedFormInverse(const ForwardKinematics& forward, const JointLimits& limits,
                                      std::unique_ptr<const ClosedForm> form)
-    : BranchInverse(forward, limits), form_(std::move(form)) {
+    : FormInverse(forward, limits, std::move(form)) {
   trusted_ = models_exactly();
 }
 
@@ -39,10 +39,6 @@ bool ClosedFormInverse::models_exactly() const {
     }
   }
   return true;
-}
-
-Configuration ClosedFormInverse::sides(const JointVector& q) const {
-  return configuration_of(form_->sides(q));
 }
 
 void ClosedFormInverse::branches(const InverseTask& task, const JointVector& held,
@@ -84,8 +80,7 @@ std::vector<JointVector> ClosedFormInverse::all(const InverseTask& task,
   }
   if (solutions.empty() && undecided(found)) return numerical_.all(task, reference);
   if (solutions.empty()) refuse(task, found, reference);
-  std::sort(solutions.begin(), solutions.end(),
-            [&](const auto& a, const auto& b) { return is_nearer(a, b, reference); });
+  sort_nearest_first(solutions, reference);
   return solutions;
 }
 
@@ -117,13 +112,8 @@ JointVector ClosedFormInverse::near_unlimited(const InverseTask& task,
   return best ? *best : numerical_.near_unlimited(task, reference);
 }
 
-BranchStatus ClosedFormInverse::solve_branches(const Pose& pose_base_tool, const JointVector& near,
-                                               BranchSet& out) const noexcept {
-  out.clear();
-  if (near.size() != joints() || !near.allFinite() || !is_pose(pose_base_tool)) {
-    return BranchStatus::kBadArgument;
-  }
-  const InverseTask task(pose_base_tool);
+BranchStatus ClosedFormInverse::branches_near(const InverseTask& task, const JointVector& near,
+                                              BranchSet& out) const noexcept {
   ClosedSolutions found;
   branches(task, near, found);
   gather(task, near, found, out);

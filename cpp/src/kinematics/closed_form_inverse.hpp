@@ -10,7 +10,7 @@
 namespace viapoint {
 
 /// A closed form under joint limits. Immutable. Threads: any.
-class ClosedFormInverse final : public BranchInverse {
+class ClosedFormInverse final : public FormInverse<ClosedForm> {
  public:
   ClosedFormInverse(const ForwardKinematics& forward, const JointLimits& limits,
                     std::unique_ptr<const ClosedForm> form);
@@ -22,14 +22,13 @@ class ClosedFormInverse final : public BranchInverse {
                                  const JointVector& reference) const override;
   [[nodiscard]] JointVector near_unlimited(const InverseTask& task,
                                            const JointVector& reference) const override;
-  [[nodiscard]] BranchStatus solve_branches(const Pose& pose_base_tool, const JointVector& near,
-                                            BranchSet& branches) const noexcept override;
   [[nodiscard]] std::optional<ArmSides> singular_sides(const JointVector& q) const override {
     return form_->sides(q);
   }
 
  private:
-  [[nodiscard]] Configuration sides(const JointVector& q) const override;
+  [[nodiscard]] BranchStatus branches_near(const InverseTask& task, const JointVector& near,
+                                           BranchSet& branches) const noexcept override;
   /// The distinct branches that the forward kinematics confirms.
   void branches(const InverseTask& task, const JointVector& held, ClosedSolutions& found) const;
   /// Whether the form's own forward kinematics is the arm's, to rounding.
@@ -38,7 +37,6 @@ class ClosedFormInverse final : public BranchInverse {
   [[noreturn]] void refuse(const InverseTask& task, const ClosedSolutions& found,
                            const JointVector& held) const;
 
-  std::unique_ptr<const ClosedForm> form_;
   bool trusted_ = false;
 };
 

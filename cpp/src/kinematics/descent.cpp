@@ -57,27 +57,16 @@ struct Kinematics {
     rotation.setIdentity();
     position.setZero();
     for (Eigen::Index i = 0; i < joints; ++i) {
-      const WalkedChain::Step& step = chain.step(static_cast<int>(i));
       const auto k = static_cast<size_t>(i);
-      position += rotation * step.offset;
-      rotation = (rotation * step.rotation).eval();
+      chain.advance(static_cast<int>(i), q[i], rotation, position);
       axes[k] = rotation.col(2);
       origins[k] = position;
-      if (step.type == JointType::kPrismatic) {
-        position += q[i] * rotation.col(2);
-        continue;
-      }
-      const double c = std::cos(q[i]);
-      const double s = std::sin(q[i]);
-      const Eigen::Vector3d x = rotation.col(0);
-      rotation.col(0) = c * x + s * rotation.col(1);
-      rotation.col(1) = c * rotation.col(1) - s * x;
     }
     position += rotation * chain.tool_offset();
     rotation = (rotation * chain.tool_rotation()).eval();
     for (Eigen::Index i = 0; i < joints; ++i) {
       const auto k = static_cast<size_t>(i);
-      if (chain.step(static_cast<int>(i)).type == JointType::kPrismatic) {
+      if (chain.type(static_cast<int>(i)) == JointType::kPrismatic) {
         jacobian.col(i) << axes[k], Eigen::Vector3d::Zero();
       } else {
         jacobian.col(i) << axes[k].cross(position - origins[k]), axes[k];

@@ -1,7 +1,5 @@
 #include "kinematics/forward_walk.hpp"
 
-#include <cmath>
-
 namespace viapoint {
 
 WalkedChain::WalkedChain(const ForwardKinematics& forward) : joints_(forward.joints()) {
@@ -29,26 +27,14 @@ Pose ForwardWalk::pose(const JointVector& q) {
   while (from < known_ && q[from] == last_[from]) ++from;
   for (int i = from; i < chain_.joints(); ++i) {
     const auto k = static_cast<size_t>(i);
-    const WalkedChain::Step& step = chain_.step(i);
-    Eigen::Matrix3d& rotation = rotation_[k];
-    Eigen::Vector3d& origin = origin_[k];
     if (i == 0) {
-      rotation = step.rotation;
-      origin = step.offset;
+      rotation_[k].setIdentity();
+      origin_[k].setZero();
     } else {
-      rotation.noalias() = rotation_[k - 1] * step.rotation;
-      origin = origin_[k - 1];
-      origin.noalias() += rotation_[k - 1] * step.offset;
+      rotation_[k] = rotation_[k - 1];
+      origin_[k] = origin_[k - 1];
     }
-    if (step.type == JointType::kPrismatic) {
-      origin += q[i] * rotation.col(2);
-      continue;
-    }
-    const double c = std::cos(q[i]);
-    const double s = std::sin(q[i]);
-    const Eigen::Vector3d x = rotation.col(0);
-    rotation.col(0) = c * x + s * rotation.col(1);
-    rotation.col(1) = c * rotation.col(1) - s * x;
+    chain_.advance(i, q[i], rotation_[k], origin_[k]);
   }
   last_ = q;
   known_ = chain_.joints();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 
 #include "viapoint/kinematics/forward_kinematics.hpp"
 
@@ -10,19 +11,34 @@ namespace viapoint {
 /// A chain as frames whose z axes are the joints', each seen from the one before.
 class WalkedChain {
  public:
+  explicit WalkedChain(const ForwardKinematics& forward);
+
+  [[nodiscard]] int joints() const { return joints_; }
+  [[nodiscard]] JointType type(int joint) const { return steps_[static_cast<size_t>(joint)].type; }
+  /// Takes a frame, base to the joint before, on through `joint` at q. Real-time: safe.
+  void advance(int joint, double q, Eigen::Matrix3d& rotation, Eigen::Vector3d& origin) const {
+    const Step& step = steps_[static_cast<size_t>(joint)];
+    origin += rotation * step.offset;
+    rotation = (rotation * step.rotation).eval();
+    if (step.type == JointType::kPrismatic) {
+      origin += q * rotation.col(2);
+      return;
+    }
+    const double c = std::cos(q);
+    const double s = std::sin(q);
+    const Eigen::Vector3d x = rotation.col(0);
+    rotation.col(0) = c * x + s * rotation.col(1);
+    rotation.col(1) = c * rotation.col(1) - s * x;
+  }
+  [[nodiscard]] const Eigen::Matrix3d& tool_rotation() const { return tool_rotation_; }
+  [[nodiscard]] const Eigen::Vector3d& tool_offset() const { return tool_offset_; }
+
+ private:
   struct Step {
     JointType type = JointType::kRevolute;
     Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
     Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< [m]
   };
-  explicit WalkedChain(const ForwardKinematics& forward);
-
-  [[nodiscard]] int joints() const { return joints_; }
-  [[nodiscard]] const Step& step(int joint) const { return steps_[static_cast<size_t>(joint)]; }
-  [[nodiscard]] const Eigen::Matrix3d& tool_rotation() const { return tool_rotation_; }
-  [[nodiscard]] const Eigen::Vector3d& tool_offset() const { return tool_offset_; }
-
- private:
   int joints_ = 0;
   std::array<Step, kMaxJoints> steps_;
   Eigen::Matrix3d tool_rotation_ = Eigen::Matrix3d::Identity();

@@ -1,18 +1,19 @@
 #include "kinematics/inverse_errors.hpp"
 
 #include <cmath>
-#include <cstdio>
 
 #include "viapoint/core/error.hpp"
+#include "viapoint/core/number_text.hpp"
 #include "viapoint/core/units.hpp"
 
 namespace viapoint {
 namespace {
 
-std::string metres(double value) {
-  char text[64];
-  std::snprintf(text, sizeof text, value < 0.01 ? "%.3g m" : "%.4f m", value);
-  return text;
+/// Without the digits that rounding made: what decides between a value and its limit is larger.
+std::string rounded_text(double value) {
+  constexpr double kPlaces = 1e9;
+  constexpr double kWhole = 1e6;  // beyond, a double has no such places to round to
+  return number_text(std::abs(value) < kWhole ? std::round(value * kPlaces) / kPlaces : value);
 }
 
 /// Largest element of RᵀR − I; not a number where the pose has one.
@@ -55,9 +56,8 @@ void require_pose(const Pose& pose) {
   problem.code = ErrorCode::kNotARotation;
   problem.message =
       "the 3x3 block of the pose is not a rotation: its columns are off unit length or right "
-      "angles "
-      "by " +
-      std::to_string(off);
+      "angles by " +
+      number_text(off);
   problem.value = off;
   problem.limit = kPoseTolerance;
   problem.ways_out = {"pass the matrix through checked_pose, which projects what is only rounded"};
@@ -88,13 +88,8 @@ void require_joints(const JointVector& q, int joints, const char* what) {
 }
 
 std::string joint_value(JointType type, double value) {
-  char text[64];
-  if (type == JointType::kRevolute) {
-    std::snprintf(text, sizeof text, "%.2f°", value / kDegree);
-  } else {
-    std::snprintf(text, sizeof text, "%.4f m", value);
-  }
-  return text;
+  return type == JointType::kRevolute ? rounded_text(value / kDegree) + "°"
+                                      : rounded_text(value) + " m";
 }
 
 void refuse_outside_limits(const ForwardKinematics& forward, const JointTurns& turns,
@@ -120,8 +115,7 @@ void refuse_outside_limits(const ForwardKinematics& forward, const JointTurns& t
     problem.message += "a joint on its limit, where the pose is missed by more than rounding";
   } else {
     problem.message += "coupled limit " + std::to_string(least.row + 1) + " at " +
-                       std::to_string(least.value) + ", its bound is " +
-                       std::to_string(least.limit);
+                       number_text(least.value) + ", its bound is " + number_text(least.limit);
   }
   problem.ways_out = {"move or turn the pose", "widen that limit, if the arm allows it"};
   throw MotionError(std::move(problem));
@@ -130,7 +124,7 @@ void refuse_outside_limits(const ForwardKinematics& forward, const JointTurns& t
 void refuse_unreachable(const std::string& what, double distance) {
   Problem problem;
   problem.code = ErrorCode::kUnreachable;
-  problem.message = what + ": " + metres(distance) + " out of reach";
+  problem.message = what + ": " + joint_value(JointType::kPrismatic, distance) + " out of reach";
   problem.value = distance;
   problem.limit = 0.0;
   problem.ways_out = {"move the pose towards the arm's working range by at least that much"};

@@ -48,7 +48,7 @@ void require_position(const Eigen::Vector3d& position);
 /// @throws MotionError(kBadArgument)
 void require_joints(const JointVector& q, int joints, const char* what);
 
-/// "195.00°" or "0.1250 m".
+/// "195°" or "0.125 m": to 1e-9, so that a value and the limit that it breaks never look alike.
 [[nodiscard]] std::string joint_value(JointType type, double value);
 
 /// @throws MotionError(kOutsideLimits) about the branch that comes nearest to the limits

@@ -1,5 +1,6 @@
 #include "kinematics/limited_inverse.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "viapoint/core/units.hpp"
@@ -53,10 +54,34 @@ JointVector LimitedInverse::solve_near_unlimited(const Pose& pose_base_tool,
   return near_unlimited(InverseTask(pose_base_tool), reference);
 }
 
-BranchStatus LimitedInverse::solve_branches(const Pose&, const JointVector&,
+BranchStatus LimitedInverse::solve_branches(const Pose& pose_base_tool, const JointVector& near,
                                             BranchSet& branches) const noexcept {
   branches.clear();
+  if (near.size() != joints() || !near.allFinite() || !is_pose(pose_base_tool)) {
+    return BranchStatus::kBadArgument;
+  }
+  return branches_near(InverseTask(pose_base_tool), near, branches);
+}
+
+BranchStatus LimitedInverse::branches_near(const InverseTask&, const JointVector&,
+                                           BranchSet&) const noexcept {
   return BranchStatus::kNoClosedForm;
+}
+
+bool LimitedInverse::add_turns(const InverseTask& task, const JointVector& branch,
+                               const JointVector& reference,
+                               std::vector<JointVector>& solutions) const {
+  const std::vector<JointVector> turned = turns_.all(branch, reference);
+  for (const JointVector& q : turned) {
+    if (confirmed(task, q)) solutions.push_back(q);
+  }
+  return !turned.empty();
+}
+
+void LimitedInverse::sort_nearest_first(std::vector<JointVector>& solutions,
+                                        const JointVector& reference) {
+  std::sort(solutions.begin(), solutions.end(),
+            [&](const auto& a, const auto& b) { return is_nearer(a, b, reference); });
 }
 
 std::optional<ArmSides> LimitedInverse::singular_sides(const JointVector&) const {

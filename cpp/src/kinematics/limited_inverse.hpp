@@ -27,7 +27,7 @@ class LimitedInverse : public InverseKinematics {
   [[nodiscard]] JointVector solve_near_unlimited(const Pose& pose_base_tool,
                                                  const JointVector& near) const final;
   [[nodiscard]] BranchStatus solve_branches(const Pose& pose_base_tool, const JointVector& near,
-                                            BranchSet& branches) const noexcept override;
+                                            BranchSet& branches) const noexcept final;
   [[nodiscard]] Configuration configuration(const JointVector& q) const final;
 
   /// As solve_all() and its kin say, of arguments that are checked.
@@ -43,6 +43,9 @@ class LimitedInverse : public InverseKinematics {
 
  protected:
   LimitedInverse(const ForwardKinematics& forward, const JointLimits& limits);
+  /// As solve_branches() says, of arguments that are checked and an empty set.
+  [[nodiscard]] virtual BranchStatus branches_near(const InverseTask& task, const JointVector& near,
+                                                   BranchSet& branches) const noexcept;
   /// The sides of q; turns are counted here.
   [[nodiscard]] virtual Configuration sides(const JointVector& q) const;
   [[nodiscard]] int joints() const final { return forward_.joints(); }
@@ -52,6 +55,10 @@ class LimitedInverse : public InverseKinematics {
   [[nodiscard]] bool confirmed(const InverseTask& task, const JointVector& q) const {
     return error(task, q).within(kPoseTolerance);
   }
+  /// Adds every confirmed turn of `branch` within the limits. @return whether there is any turn
+  bool add_turns(const InverseTask& task, const JointVector& branch, const JointVector& reference,
+                 std::vector<JointVector>& solutions) const;
+  static void sort_nearest_first(std::vector<JointVector>& solutions, const JointVector& reference);
 
   ForwardKinematics forward_;
   JointLimits limits_;

@@ -36,9 +36,7 @@ double change_of(const JointVector& a, const JointVector& b) {
 NearlyClosedInverse::NearlyClosedInverse(const ForwardKinematics& forward,
                                          const JointLimits& limits,
                                          std::unique_ptr<const ClosedForm> form)
-    : BranchInverse(forward, limits),
-      form_(std::move(form)),
-      wider_turns_(forward, wider(limits)) {}
+    : FormInverse(forward, limits, std::move(form)), wider_turns_(forward, wider(limits)) {}
 
 std::unique_ptr<const NearlyClosedInverse> NearlyClosedInverse::make(
     const ForwardKinematics& forward, const JointLimits& limits) {
@@ -84,10 +82,6 @@ std::string NearlyClosedInverse::family() const {
   std::snprintf(size, sizeof size, "%.3g m and %.3g rad", deviation_.position, deviation_.angle);
   return form_->family() + ", out of true by up to " + size +
          ": its closed form, then descents on the arm as it is";
-}
-
-Configuration NearlyClosedInverse::sides(const JointVector& q) const {
-  return configuration_of(form_->sides(q));
 }
 
 std::optional<JointVector> NearlyClosedInverse::polished(const InverseTask& task,
@@ -162,14 +156,9 @@ std::vector<JointVector> NearlyClosedInverse::all(const InverseTask& task,
     for (const JointVector& q : numerical_.find_all(task, reference)) add(q);
   }
   std::vector<JointVector> solutions;
-  for (const JointVector& branch : branches) {
-    for (const JointVector& q : turns_.all(branch, reference)) {
-      if (confirmed(task, q)) solutions.push_back(q);
-    }
-  }
+  for (const JointVector& branch : branches) add_turns(task, branch, reference, solutions);
   if (solutions.empty()) return numerical_.all(task, reference);
-  std::sort(solutions.begin(), solutions.end(),
-            [&](const auto& a, const auto& b) { return is_nearer(a, b, reference); });
+  sort_nearest_first(solutions, reference);
   return solutions;
 }
 
@@ -187,14 +176,8 @@ JointVector NearlyClosedInverse::near_unlimited(const InverseTask& task,
   return best ? *best : numerical_.near_unlimited(task, reference);
 }
 
-BranchStatus NearlyClosedInverse::solve_branches(const Pose& pose_base_tool,
-                                                 const JointVector& near,
-                                                 BranchSet& out) const noexcept {
-  out.clear();
-  if (near.size() != joints() || !near.allFinite() || !is_pose(pose_base_tool)) {
-    return BranchStatus::kBadArgument;
-  }
-  const InverseTask task(pose_base_tool);
+BranchStatus NearlyClosedInverse::branches_near(const InverseTask& task, const JointVector& near,
+                                                BranchSet& out) const noexcept {
   ClosedSolutions found;
   form_->solve(task, near, found);
   bool any = false;

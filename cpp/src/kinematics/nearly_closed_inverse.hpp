@@ -13,7 +13,7 @@ namespace viapoint {
 /// An arm whose axes are out of true, as a calibration finds them: each branch of the true arm's
 /// closed form is the start of a descent on the arm as it is. Where the closed form has fewer than
 /// all branches the search looks for more. Immutable. Threads: any.
-class NearlyClosedInverse final : public BranchInverse {
+class NearlyClosedInverse final : public FormInverse<ClosedForm> {
  public:
   /// Nothing when the arm is too far from every closed form with eight branches.
   [[nodiscard]] static std::unique_ptr<const NearlyClosedInverse> make(
@@ -26,13 +26,12 @@ class NearlyClosedInverse final : public BranchInverse {
                                  const JointVector& reference) const override;
   [[nodiscard]] JointVector near_unlimited(const InverseTask& task,
                                            const JointVector& reference) const override;
-  [[nodiscard]] BranchStatus solve_branches(const Pose& pose_base_tool, const JointVector& near,
-                                            BranchSet& branches) const noexcept override;
 
  private:
   NearlyClosedInverse(const ForwardKinematics& forward, const JointLimits& limits,
                       std::unique_ptr<const ClosedForm> form);
-  [[nodiscard]] Configuration sides(const JointVector& q) const override;
+  [[nodiscard]] BranchStatus branches_near(const InverseTask& task, const JointVector& near,
+                                           BranchSet& branches) const noexcept override;
   /// How far the form's answers miss the arm's poses, at the most of some seeded ones; nothing
   /// where a descent from them fails.
   [[nodiscard]] std::optional<PoseError> deviation() const;
@@ -46,7 +45,6 @@ class NearlyClosedInverse final : public BranchInverse {
                                                          const JointVector& start,
                                                          const JointVector& reference) const;
 
-  std::unique_ptr<const ClosedForm> form_;
   JointTurns wider_turns_;  ///< under limits as much wider as a descent may move a joint
   PoseError deviation_;
 };

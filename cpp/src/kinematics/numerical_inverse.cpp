@@ -135,13 +135,8 @@ std::vector<JointVector> NumericalInverse::all(const InverseTask& task,
   const Search found = search(task, reference, kSearchStarts, SIZE_MAX);
   if (found.inside.empty()) refuse(task, found);
   std::vector<JointVector> solutions;
-  for (const JointVector& branch : found.inside) {
-    for (const JointVector& q : turns_.all(branch, reference)) {
-      if (confirmed(task, q)) solutions.push_back(q);
-    }
-  }
-  std::sort(solutions.begin(), solutions.end(),
-            [&](const auto& a, const auto& b) { return is_nearer(a, b, reference); });
+  for (const JointVector& branch : found.inside) add_turns(task, branch, reference, solutions);
+  sort_nearest_first(solutions, reference);
   return solutions;
 }
 
@@ -192,7 +187,8 @@ void NumericalInverse::refuse(const InverseTask& task, const Search& search_resu
     refuse_unreachable("the position of the pose", measured(place));
   }
   const PoseError least = search_result.least;
-  const std::string miss = "the nearest found is " + std::to_string(least.position) + " m and " +
+  const std::string miss = "the nearest found is " +
+                           joint_value(JointType::kPrismatic, least.position) + " and " +
                            joint_value(JointType::kRevolute, least.angle) + " away";
   Problem problem;
   problem.value = least.angle;

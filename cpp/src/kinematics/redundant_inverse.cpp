@@ -29,11 +29,7 @@ constexpr double kCrowdingCost = 0.25;
 
 RedundantInverse::RedundantInverse(const ForwardKinematics& forward, const JointLimits& limits,
                                    std::unique_ptr<const RedundantForm> form)
-    : BranchInverse(forward, limits), form_(std::move(form)), sweep_(forward, limits) {}
-
-Configuration RedundantInverse::sides(const JointVector& q) const {
-  return configuration_of(form_->sides(q));
-}
+    : FormInverse(forward, limits, std::move(form)), sweep_(forward, limits) {}
 
 double RedundantInverse::redundancy_of(const JointVector& q) const {
   require_joints(q, joints(), "q");
@@ -56,28 +52,18 @@ std::vector<JointVector> RedundantInverse::solve_all_at(const Pose& pose_base_to
   std::vector<JointVector> refused;
   for (const ClosedBranch& branch : found.branches) {
     each_share(branch, reference, [&](const JointVector& candidate) {
-      const std::vector<JointVector> turned = turns_.all(candidate, reference);
-      if (turned.empty()) refused.push_back(candidate);
-      for (const JointVector& q : turned) {
-        if (confirmed(task, q)) solutions.push_back(q);
-      }
+      if (!add_turns(task, candidate, reference, solutions)) refused.push_back(candidate);
     });
   }
   if (solutions.empty()) refuse_outside_limits(forward_, turns_, refused);
-  std::sort(solutions.begin(), solutions.end(),
-            [&](const auto& a, const auto& b) { return is_nearer(a, b, reference); });
+  sort_nearest_first(solutions, reference);
   return solutions;
 }
 
-BranchStatus RedundantInverse::solve_branches(const Pose& pose_base_tool, const JointVector& near,
-                                              BranchSet& out) const noexcept {
-  out.clear();
-  if (near.size() != joints() || !near.allFinite() || !is_pose(pose_base_tool)) {
-    return BranchStatus::kBadArgument;
-  }
-  const InverseTask task(pose_base_tool);
+BranchStatus RedundantInverse::branches_near(const InverseTask& task, const JointVector& near,
+                                             BranchSet& out) const noexcept {
   ClosedSolutions found;
-  form_->solve(pose_base_tool, form_->parameter_of(near), near, found);
+  form_->solve(task.goal, form_->parameter_of(near), near, found);
   keep_confirmed(task, found);
   gather(task, near, found, out);
   if (out.size() > 0) return BranchStatus::kSolved;
@@ -224,9 +210,7 @@ std::vector<JointVector> RedundantInverse::all(const InverseTask& task,
   std::vector<JointVector> solutions;
   for (const int count : {kSweep, kFineScan}) {
     for (const JointVector& q : sweep_.find(low, high, count, reference, solve, signs, accept)) {
-      for (const JointVector& turn : turns_.all(q, reference)) {
-        if (confirmed(task, turn)) solutions.push_back(turn);
-      }
+      add_turns(task, q, reference, solutions);
     }
     if (!solutions.empty()) break;
   }
@@ -235,8 +219,7 @@ std::vector<JointVector> RedundantInverse::all(const InverseTask& task,
     if (missing > kPoseTolerance) refuse_unreachable("the wrist at this pose", missing);
     return numerical_.all(task, reference);
   }
-  std::sort(solutions.begin(), solutions.end(),
-            [&](const auto& a, const auto& b) { return is_nearer(a, b, reference); });
+  sort_nearest_first(solutions, reference);
   return solutions;
 }
 

@@ -14,7 +14,7 @@ namespace viapoint {
 
 /// Seven joints in closed form, the parameter chosen here: near the reference when there is a
 /// solution near it, and otherwise also away from the limits. Immutable. Threads: any.
-class RedundantInverse final : public BranchInverse {
+class RedundantInverse final : public FormInverse<RedundantForm> {
  public:
   RedundantInverse(const ForwardKinematics& forward, const JointLimits& limits,
                    std::unique_ptr<const RedundantForm> form);
@@ -30,8 +30,6 @@ class RedundantInverse final : public BranchInverse {
                                  const JointVector& reference) const override;
   [[nodiscard]] JointVector near_unlimited(const InverseTask& task,
                                            const JointVector& reference) const override;
-  [[nodiscard]] BranchStatus solve_branches(const Pose& pose_base_tool, const JointVector& near,
-                                            BranchSet& branches) const noexcept override;
 
  private:
   struct Choice {
@@ -40,7 +38,8 @@ class RedundantInverse final : public BranchInverse {
     double cost = 1e300;  ///< 1e300: nothing within the limits
   };
   using Cost = std::function<double(const JointVector&)>;
-  [[nodiscard]] Configuration sides(const JointVector& q) const override;
+  [[nodiscard]] BranchStatus branches_near(const InverseTask& task, const JointVector& near,
+                                           BranchSet& branches) const noexcept override;
   /// The cheapest solution within the limits with this parameter.
   [[nodiscard]] Choice choose(const InverseTask& task, double parameter,
                               const JointVector& reference, const Cost& cost) const;
@@ -57,7 +56,6 @@ class RedundantInverse final : public BranchInverse {
   /// Distance from the nearest limit, as a share of that joint's range.
   [[nodiscard]] double margin(const JointVector& q) const;
 
-  std::unique_ptr<const RedundantForm> form_;
   ConfigurationSweep sweep_;
 };
 
