@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "path/teaching_arms.hpp"
+#include "problem_count.hpp"
 #include "viapoint/core/error.hpp"
 #include "viapoint/path/insertion.hpp"
 
@@ -120,7 +121,7 @@ TEST(RoundCorner, PutsTheInnerControlPointsOnTheCorner) {
 
 TEST(RoundCorner, UsesAJointZoneFullyOnThousandsOfJointLines) {
   int full = 0;
-  for (unsigned seed = 0; seed < 3000; ++seed) {
+  for (unsigned seed = 0; seed < problems(3000U); ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
     const int joints = 2 + static_cast<int>(seed % 6);
@@ -161,7 +162,7 @@ TEST(RoundCorner, UsesAJointZoneFullyOnThousandsOfJointLines) {
       ASSERT_TRUE(all_before || all_after) << corner.reason;
     }
   }
-  EXPECT_GT(full, 500);
+  EXPECT_GT(full, problems(500));
 }
 
 /// Two straight tool lines that meet, inserted on the PUMA.
@@ -203,7 +204,7 @@ std::optional<ToolCorner> tool_corner(const ForwardKinematics& arm, unsigned see
 TEST(RoundCorner, StaysWithinTheRadiusAndUsesIt) {
   const ForwardKinematics arm = testing::puma560();
   int full = 0;
-  for (unsigned seed = 0; seed < 400; ++seed) {
+  for (unsigned seed = 0; seed < problems(400U); ++seed) {
     SCOPED_TRACE(seed);
     const auto legs = tool_corner(arm, seed);
     if (!legs) continue;
@@ -232,13 +233,13 @@ TEST(RoundCorner, StaysWithinTheRadiusAndUsesIt) {
       ++full;
     }
   }
-  EXPECT_GT(full, 150);
+  EXPECT_GT(full, problems(150));
 }
 
 TEST(RoundCorner, UsesAToolDeviationFully) {
   const ForwardKinematics arm = testing::puma560();
   int full = 0;
-  for (unsigned seed = 0; seed < 300; ++seed) {
+  for (unsigned seed = 0; seed < problems(300U); ++seed) {
     SCOPED_TRACE(seed);
     const auto legs = tool_corner(arm, seed);
     if (!legs) continue;
@@ -258,7 +259,7 @@ TEST(RoundCorner, UsesAToolDeviationFully) {
       ++full;
     }
   }
-  EXPECT_GT(full, 100);
+  EXPECT_GT(full, problems(100));
 }
 
 TEST(RoundCorner, TellsTheToolDeviationOfAJointZone) {

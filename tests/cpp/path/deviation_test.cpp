@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "path/insertion_checks.hpp"
+#include "problem_count.hpp"
 #include "viapoint/path/insertion.hpp"
 
 namespace viapoint {
@@ -14,7 +15,7 @@ using testing::sampled;
 TEST(BoundDeviation, IsNeverBelowAndWithinItsResolutionOfTheTruth) {
   const ForwardKinematics arm = testing::puma560();
   const JointLimits limits = testing::puma560_limits();
-  for (unsigned seed = 0; seed < 2000; ++seed) {
+  for (unsigned seed = 0; seed < problems(2000U); ++seed) {
     SCOPED_TRACE(seed);
     // Any joint line against the tool line between its ends: deviations up to decimetres.
     std::mt19937 random(seed);

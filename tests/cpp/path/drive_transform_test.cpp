@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "golden.hpp"
+#include "problem_count.hpp"
 #include "viapoint/core/error.hpp"
 #include "viapoint/core/units.hpp"
 
@@ -60,7 +61,7 @@ TEST(DriveMotion, GoldenTextbookSection3AngularVelocityJumpsWhereTheTransitionBe
 }
 
 TEST(DriveTransform, LeadsFromOnePoseToTheOther) {
-  for (int seed = 0; seed < 5000; ++seed) {
+  for (int seed = 0; seed < problems(5000); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
     const Pose from = random_pose(random), to = random_pose(random);
@@ -86,7 +87,7 @@ TEST(DriveTransform, IsDefinedWhereTheApproachAxisDoesNotTurn) {
 }
 
 TEST(DriveMotion, MeetsItselfInPoseAndVelocityThroughAnyNumberOfPoses) {
-  for (int seed = 0; seed < 3000; ++seed) {
+  for (int seed = 0; seed < problems(3000); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
     std::uniform_real_distribution<double> seconds(0.4, 2.0);
@@ -117,7 +118,7 @@ TEST(DriveMotion, MeetsItselfInPoseAndVelocityThroughAnyNumberOfPoses) {
 TEST(DriveMotion, DerivativesMatchFiniteDifferences) {
   const double h = 1e-5;
   int compared = 0;
-  for (int seed = 0; seed < 300; ++seed) {
+  for (int seed = 0; seed < problems(300); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
     const std::array poses{random_pose(random), random_pose(random), random_pose(random)};
@@ -140,7 +141,7 @@ TEST(DriveMotion, DerivativesMatchFiniteDifferences) {
     }
     if (testing::Test::HasFailure()) return;
   }
-  EXPECT_EQ(compared, 900);
+  EXPECT_EQ(compared, problems(900));
 }
 
 TEST(DriveMotion, RefusesTimesThatCannotBeLaidOut) {

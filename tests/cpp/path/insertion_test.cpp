@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "path/insertion_checks.hpp"
+#include "problem_count.hpp"
 
 namespace viapoint {
 namespace {
@@ -19,7 +20,7 @@ TEST(InsertCurve, StaysWithinToleranceOnThousandsOfLines) {
   const ForwardKinematics arm = testing::puma560();
   const JointLimits limits = testing::puma560_limits();
   int inserted = 0;
-  for (unsigned seed = 0; seed < 4000; ++seed) {
+  for (unsigned seed = 0; seed < problems(4000U); ++seed) {
     SCOPED_TRACE(seed);
     const RandomLine line = random_line(arm, limits, seed, 0.05 + 0.25 * (seed % 4));
     const InsertionOptions options;
@@ -39,7 +40,7 @@ TEST(InsertCurve, StaysWithinToleranceOnThousandsOfLines) {
       ASSERT_LE(*error.problem().share, 1.0);
     }
   }
-  EXPECT_GT(inserted, 1000);
+  EXPECT_GT(inserted, problems(1000));
 }
 
 TEST(InsertCurve, KeepsTightTolerancesOfPositionAndAngleApart) {
@@ -47,7 +48,7 @@ TEST(InsertCurve, KeepsTightTolerancesOfPositionAndAngleApart) {
   const JointLimits limits = testing::no_position_limits(6);
   const JointLimits range = testing::puma560_limits();
   int inserted = 0;
-  for (unsigned seed = 0; seed < 300; ++seed) {
+  for (unsigned seed = 0; seed < problems(300U); ++seed) {
     SCOPED_TRACE(seed);
     const RandomLine line = random_line(arm, range, seed, 0.3);
     InsertionOptions options;
@@ -62,7 +63,7 @@ TEST(InsertCurve, KeepsTightTolerancesOfPositionAndAngleApart) {
           << error.what();
     }
   }
-  EXPECT_GT(inserted, 200);
+  EXPECT_GT(inserted, problems(200));
 }
 
 TEST(InsertCurve, HoldsTheTextbooksSecondLegWithTheWristInterpolated) {  // textbook §3
@@ -140,7 +141,7 @@ TEST(InsertCurve, FollowsWithARedundantArm) {
   const JointLimits range = testing::symmetric_limits(JointVector::Constant(7, 1.5));
   size_t pieces = 0;
   int inserted = 0;
-  for (unsigned seed = 0; seed < 200; ++seed) {
+  for (unsigned seed = 0; seed < problems(200U); ++seed) {
     SCOPED_TRACE(seed);
     const RandomLine line = random_line(arm, range, seed, 0.2);
     try {
@@ -153,7 +154,7 @@ TEST(InsertCurve, FollowsWithARedundantArm) {
           << error.what();
     }
   }
-  EXPECT_GT(inserted, 150);
+  EXPECT_GT(inserted, problems(150));
   EXPECT_LT(pieces, 20u * static_cast<size_t>(inserted));
 }
 

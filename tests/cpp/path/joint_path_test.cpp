@@ -4,6 +4,8 @@
 
 #include <random>
 
+#include "problem_count.hpp"
+
 namespace viapoint {
 namespace {
 
@@ -30,7 +32,7 @@ double distance(const JointVector& a, const JointVector& b) {
 }
 
 TEST(JointPiece, HermiteMeetsPositionSlopeAndCurvatureAtBothEnds) {
-  for (unsigned seed = 0; seed < 2000; ++seed) {
+  for (unsigned seed = 0; seed < problems(2000U); ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
     const int joints = 1 + static_cast<int>(seed % kMaxJoints);
@@ -51,7 +53,7 @@ TEST(JointPiece, HermiteMeetsPositionSlopeAndCurvatureAtBothEnds) {
 }
 
 TEST(JointPiece, DerivativesAgreeWithDifferencesOfTheValue) {
-  for (unsigned seed = 0; seed < 2000; ++seed) {
+  for (unsigned seed = 0; seed < problems(2000U); ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
     const JointPiece piece =
@@ -82,7 +84,7 @@ TEST(JointPiece, LineHasConstantSlope) {
 }
 
 TEST(JointPiece, PartIsTheSameCurveAndKeepsWhatThePieceCarries) {
-  for (unsigned seed = 0; seed < 2000; ++seed) {
+  for (unsigned seed = 0; seed < problems(2000U); ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
     JointPiece piece = JointPiece::hermite(random_point(random, 6), random_point(random, 6), 1.3);

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "path/random_curves.hpp"
+#include "problem_count.hpp"
 #include "viapoint/core/error.hpp"
 #include "viapoint/path/spline.hpp"
 
@@ -36,7 +37,7 @@ Turns random_turns(unsigned seed, size_t count, double most) {
 }
 
 TEST(OrientationSpline, PassesItsOrientationsWithContinuousRates) {
-  for (unsigned seed = 0; seed < 1000; ++seed) {
+  for (unsigned seed = 0; seed < problems(1000U); ++seed) {
     SCOPED_TRACE(seed);
     const Turns turns = random_turns(seed, 2 + seed % 8, 2.5);
     const OrientationSpline spline = OrientationSpline::through(turns.rotations, turns.at);
@@ -93,7 +94,7 @@ TEST(OrientationSpline, DoesNotDependOnTheFrameItIsSeenFrom) {
 }
 
 TEST(OrientationSpline, MeetsKnotsWhateverTheirRates) {
-  for (unsigned seed = 0; seed < 500; ++seed) {
+  for (unsigned seed = 0; seed < problems(500U); ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
     std::vector<OrientationKnot> knots;
@@ -130,7 +131,7 @@ TEST(ExponentialPoint, BoundsOfItsRatesHold) {
   // ‖w'‖ <= ‖φ''‖ + ½‖φ'‖² and ‖w''‖ <= ‖φ'''‖ + 3/2 ‖φ'‖‖φ''‖ + ½‖φ'‖³, also far from zero.
   double tightest1 = 0.0;
   double tightest2 = 0.0;
-  for (unsigned seed = 0; seed < 20000; ++seed) {
+  for (unsigned seed = 0; seed < problems(20000U); ++seed) {
     std::mt19937 random(seed);
     const Vector3d v = random_vector(random, 1.5);
     const Vector3d v1 = random_vector(random, 1.0);
@@ -152,7 +153,7 @@ TEST(ExponentialPoint, BoundsOfItsRatesHold) {
 }
 
 TEST(SteadyTurn, ReachesTheOtherOrientationByTheLeastRotation) {
-  for (unsigned seed = 0; seed < 500; ++seed) {
+  for (unsigned seed = 0; seed < problems(500U); ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
     const Matrix3d from = random_rotation(random);

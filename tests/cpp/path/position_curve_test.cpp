@@ -6,6 +6,7 @@
 #include <random>
 
 #include "path/random_curves.hpp"
+#include "problem_count.hpp"
 #include "viapoint/core/error.hpp"
 
 namespace viapoint {
@@ -15,7 +16,7 @@ using Eigen::Vector3d;
 using testing::random_vector;
 
 TEST(HelixCurve, PassesThroughItsThreePointsInOrder) {
-  for (unsigned seed = 0; seed < 3000; ++seed) {
+  for (unsigned seed = 0; seed < problems(3000U); ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
     const double size = std::pow(10.0, -3.0 + 4.0 * (seed % 10) / 10.0);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "path/teaching_arms.hpp"
+#include "problem_count.hpp"
 
 namespace viapoint {
 namespace {
@@ -16,7 +17,7 @@ JointPiece random_piece(std::mt19937& random, int joints) {
 
 TEST(PiecePositionViolation, AgreesWithDenseSamples) {
   int breaches = 0;
-  for (unsigned seed = 0; seed < 3000; ++seed) {
+  for (unsigned seed = 0; seed < problems(3000U); ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
     const JointPiece piece = random_piece(random, 3);
@@ -52,7 +53,7 @@ TEST(PiecePositionViolation, AgreesWithDenseSamples) {
     ASSERT_GT(std::abs(found->value), std::abs(found->limit));
     ASSERT_NEAR(farthest_value(piece, limits, *found), found->value, 1e-11);
   }
-  EXPECT_GT(breaches, 500);
+  EXPECT_GT(breaches, problems(500));
 }
 
 TEST(PiecePositionViolation, FindsAPeakBetweenSamples) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "problem_count.hpp"
 #include "viapoint/core/error.hpp"
 
 namespace viapoint {
@@ -48,7 +49,7 @@ class NaturalSpline : public ::testing::TestWithParam<int> {};
 
 TEST_P(NaturalSpline, PassesItsPointsAndIsAsSmoothAsItsDegreeAllows) {
   const int degree = GetParam();
-  for (unsigned seed = 0; seed < 500; ++seed) {
+  for (unsigned seed = 0; seed < problems(500U); ++seed) {
     SCOPED_TRACE(seed);
     const Data data = random_data(seed, 2 + seed % 12, 1 + static_cast<int>(seed % 7), 1.5);
     const JointPath path = quintic_chain(natural_spline(data.points, data.at, degree), data.at);
@@ -99,7 +100,7 @@ TEST_P(NaturalSpline, ReproducesStraightLines) {
 }
 
 TEST_P(NaturalSpline, IsStraightThroughTwoPoints) {
-  for (unsigned seed = 0; seed < 2000; ++seed) {
+  for (unsigned seed = 0; seed < problems(2000U); ++seed) {
     SCOPED_TRACE(seed);
     const Data data = random_data(seed, 2, 3, 3.0);
     const JointVector slope = (data.points[1] - data.points[0]) / data.at[1];

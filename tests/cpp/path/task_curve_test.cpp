@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "problem_count.hpp"
 #include "viapoint/core/units.hpp"
 
 namespace viapoint {
@@ -21,7 +22,7 @@ Pose random_pose(std::mt19937& random) {
 }
 
 TEST(LineCurve, RunsFromStartToGoalByTheLeastRotation) {
-  for (unsigned seed = 0; seed < 2000; ++seed) {
+  for (unsigned seed = 0; seed < problems(2000U); ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
     const Pose from = random_pose(random);
@@ -41,7 +42,7 @@ TEST(LineCurve, RunsFromStartToGoalByTheLeastRotation) {
 }
 
 TEST(LineCurve, DerivativesAgreeWithDifferences) {
-  for (unsigned seed = 0; seed < 500; ++seed) {
+  for (unsigned seed = 0; seed < problems(500U); ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
     const LineCurve curve(random_pose(random), random_pose(random));

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "path/insertion_checks.hpp"
+#include "problem_count.hpp"
 #include "viapoint/path/insertion.hpp"
 
 namespace viapoint {
@@ -19,7 +20,7 @@ TEST(InsertCurve, NeedsFewerKnotsThanTaylor) {
     size_t ours = 0;
     size_t taylors = 0;
     int lines = 0;
-    for (unsigned seed = 0; seed < 400; ++seed) {
+    for (unsigned seed = 0; seed < problems(400U); ++seed) {
       const RandomLine line = random_line(arm, range, seed, 0.25);
       InsertionOptions options;
       options.position_tolerance = tolerance;
@@ -40,7 +41,7 @@ TEST(InsertCurve, NeedsFewerKnotsThanTaylor) {
     RecordProperty(name + "_knots", std::to_string(ours));
     RecordProperty(name + "_taylor_knots", std::to_string(taylors));
     std::printf("%g mm: %d lines, %zu knots, Taylor %zu\n", tolerance * 1e3, lines, ours, taylors);
-    ASSERT_GT(lines, 200);
+    ASSERT_GT(lines, problems(200));
     EXPECT_LT(ours, taylors);
   }
 }

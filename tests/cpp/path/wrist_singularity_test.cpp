@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "path/insertion_checks.hpp"
+#include "problem_count.hpp"
 #include "viapoint/path/insertion.hpp"
 
 namespace viapoint {
@@ -18,11 +19,7 @@ using testing::expect_sound;
 using testing::problem_of;
 using testing::RandomLine;
 
-#ifdef __SANITIZE_ADDRESS__
-constexpr unsigned kLines = 200;
-#else
-constexpr unsigned kLines = 2000;
-#endif
+constexpr unsigned kLines = problems(2000U);
 
 /// Joints at increasing s.
 struct Track {

@@ -8,6 +8,7 @@
 
 #include "golden.hpp"
 #include "planning/planner_fixture.hpp"
+#include "problem_count.hpp"
 #include "viapoint/path/drive_transform.hpp"
 
 namespace viapoint {
@@ -261,7 +262,7 @@ TEST(TimedPlan, MovesARobotWithoutKinematicsInJointsOnly) {
 TEST(TimedPlan, FollowsRandomMotionsOfTheToolOrSaysWhyNot) {
   const RobotPtr arm = robot("puma560");
   int planned_motions = 0;
-  for (int seed = 0; seed < 300; ++seed) {
+  for (int seed = 0; seed < problems(300); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
     std::uniform_real_distribution<double> nearby(-0.6, 0.6);
@@ -298,7 +299,7 @@ TEST(TimedPlan, FollowsRandomMotionsOfTheToolOrSaysWhyNot) {
     }
     if (testing::Test::HasFailure()) return;
   }
-  EXPECT_GT(planned_motions, 250);
+  EXPECT_GT(planned_motions, problems(250));
 }
 
 }  // namespace

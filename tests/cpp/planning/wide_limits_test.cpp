@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 
+#include "problem_count.hpp"
 #include "viapoint/kinematics/inverse_kinematics.hpp"
 #include "viapoint/planning/motion_planner.hpp"
 
@@ -47,11 +48,7 @@ MotionProgram line_by_singular_wrist(const RobotModel& robot, unsigned seed) {
 // Some of these lines cannot be followed, and the way out with the wrist interpolated is then tried
 // for every end: over all turns of all joints that were 32768 curves, half a minute a line.
 TEST(WideLimits, LinesByTheSingularWristArePlannedOrRefusedByName) {
-#ifdef __SANITIZE_ADDRESS__
-  constexpr unsigned kLines = 100;
-#else
-  constexpr unsigned kLines = 2000;
-#endif
+  constexpr unsigned kLines = problems(2000U);
   const RobotPtr robot = puma560_of_many_turns();
   const MotionPlanner planner(robot);
   int planned = 0;

@@ -7,6 +7,7 @@
 #include <random>
 #include <string>
 
+#include "problem_count.hpp"
 #include "profile/axis_move_checks.hpp"
 
 namespace viapoint {
@@ -55,7 +56,7 @@ TEST(QuickestMove, IsExactWithinLimitsAndExtremalOnShortMoves) {
 }
 
 TEST(QuickestMove, IsTheRestToRestMoveFromRest) {
-  for (int seed = 0; seed < 2000; ++seed) {
+  for (int seed = 0; seed < problems(2000); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
     const double v = log_uniform(random, 1e-6, 1e9), a = log_uniform(random, 1e-6, 1e9),
@@ -70,7 +71,7 @@ TEST(QuickestMove, IsTheRestToRestMoveFromRest) {
 /// Read backwards, with velocities kept and accelerations turned, a motion is one of the same
 /// length the other way: v'(t) = v(T − t), a'(t) = −a(T − t), and the jerk as it was.
 TEST(QuickestMove, TakesAsLongReadBackwards) {
-  for (int seed = 0; seed < 5000; ++seed) {
+  for (int seed = 0; seed < problems(5000); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
     const AxisRequest r = testing::random_request(random, 1.0);
@@ -92,7 +93,7 @@ TEST(QuickestMove, TakesAsLongReadBackwards) {
 }
 
 TEST(QuickestMove, GoesOnAsPlannedFromAnyOfItsStates) {
-  for (int seed = 0; seed < 3000; ++seed) {
+  for (int seed = 0; seed < problems(3000); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
     AxisRequest r = testing::random_request(random, 0.7);
@@ -186,7 +187,7 @@ int first_inside(const AxisRequest& r, const AxisMove& move) {
 }
 
 TEST(QuickestMove, ComesBackInsideAndStaysThere) {
-  for (int seed = 0; seed < 20000; ++seed) {
+  for (int seed = 0; seed < problems(20000); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
     AxisRequest r = testing::random_request(random, 0.7);
@@ -208,7 +209,7 @@ TEST(QuickestMove, ComesBackInsideAndStaysThere) {
 }
 
 TEST(QuickestMove, NeverReversesWhenTheSpeedLimitIsLoweredInMotion) {
-  for (int seed = 0; seed < 5000; ++seed) {
+  for (int seed = 0; seed < problems(5000); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
     AxisRequest r = testing::random_request(random, 0.7);
@@ -260,7 +261,7 @@ TEST(QuickestMove, NamesWhatCannotBe) {
 }
 
 TEST(QuickestVelocityChange, EndsAtTheVelocityAndIsExtremal) {
-  for (int seed = 0; seed < 20000; ++seed) {
+  for (int seed = 0; seed < problems(20000); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
     AxisRequest r = testing::random_request(random, 1.0);

@@ -8,6 +8,7 @@
 #include <random>
 #include <string>
 
+#include "problem_count.hpp"
 #include "profile/law_checks.hpp"
 #include "viapoint/core/error.hpp"
 #include "viapoint/profile/trapezoid.hpp"
@@ -31,7 +32,7 @@ std::vector<AxisLaw> three_moves(int seed) {
 class TimedTogether : public ::testing::TestWithParam<AxisTiming> {};
 
 TEST_P(TimedTogether, KeepsEndsContinuityAndEveryPeak) {
-  for (int seed = 0; seed < 2000; ++seed) {
+  for (int seed = 0; seed < problems(2000); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const std::vector<AxisLaw> alone = three_moves(seed);
     const std::vector<AxisLaw> together = timed_together(alone, GetParam());

@@ -8,6 +8,7 @@
 #include <random>
 #include <string>
 
+#include "problem_count.hpp"
 #include "profile/law_checks.hpp"
 #include "viapoint/core/error.hpp"
 #include "viapoint/profile/via_cubics.hpp"
@@ -31,7 +32,7 @@ std::vector<double> random_points(std::mt19937_64& random, size_t size) {
 }
 
 TEST(Bezier, AgreesWithDeCasteljauAtEveryDegree) {
-  for (int seed = 0; seed < 1000; ++seed) {
+  for (int seed = 0; seed < problems(1000); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
     const std::vector<double> points = random_points(random, 2 + random() % 11);
@@ -57,7 +58,7 @@ TEST(BSpline, WithoutInnerKnotsIsABezier) {
 }
 
 TEST(BSpline, IsAsSmoothAsItsDegreeAndStaysInItsHull) {
-  for (int seed = 0; seed < 2000; ++seed) {
+  for (int seed = 0; seed < problems(2000); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
     const int degree = 1 + static_cast<int>(random() % 5);
@@ -106,7 +107,7 @@ TEST(BSpline, RefusesWhatDoesNotFit) {
 }
 
 TEST(SplineThrough, ReachesPointsAndEndConditions) {
-  for (int seed = 0; seed < 2000; ++seed) {
+  for (int seed = 0; seed < problems(2000); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
     std::uniform_real_distribution<double> any(-3.0, 3.0);

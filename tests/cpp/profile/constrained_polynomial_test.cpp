@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "problem_count.hpp"
 #include "viapoint/core/error.hpp"
 
 namespace viapoint {
@@ -52,7 +53,7 @@ TEST(ConstrainedPolynomial, SepticFromRestToRestIsTheTextbooks) {
 }
 
 TEST(ConstrainedPolynomial, MeetsRandomConditionsInside) {
-  for (int seed = 0; seed < 3000; ++seed) {
+  for (int seed = 0; seed < problems(3000); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
     std::uniform_real_distribution<double> any(-3.0, 3.0);

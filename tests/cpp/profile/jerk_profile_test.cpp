@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "problem_count.hpp"
+
 namespace viapoint {
 namespace {
 
@@ -108,7 +110,7 @@ double log_uniform(std::mt19937_64& random, double low, double high) {
 }
 
 TEST(RestToRest, KeepsLimitsAndEndsExactlyOverDecades) {
-  for (int seed = 0; seed < 20000; ++seed) {
+  for (int seed = 0; seed < problems(20000); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
     Move move{log_uniform(random, 1e-12, 1e9), log_uniform(random, 1e-6, 1e9),
@@ -121,7 +123,7 @@ TEST(RestToRest, KeepsLimitsAndEndsExactlyOverDecades) {
 }
 
 TEST(RestToRest, KeepsLimitsOnEverydayMoves) {
-  for (int seed = 0; seed < 20000; ++seed) {
+  for (int seed = 0; seed < problems(20000); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
     const double velocity = log_uniform(random, 0.1, 10.0);

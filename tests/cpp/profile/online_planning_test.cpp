@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "problem_count.hpp"
 #include "profile/axis_move_checks.hpp"
 #include "viapoint/profile/state_to_state.hpp"
 
@@ -156,7 +157,7 @@ class Reversals {
 };
 
 TEST(OnlinePlanning, ArrivesAtARestingTargetAsTheFirstPlanWouldHave) {
-  for (int seed = 0; seed < 400; ++seed) {
+  for (int seed = 0; seed < problems(400); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
     AxisRequest r = testing::random_request(random, 0.5);

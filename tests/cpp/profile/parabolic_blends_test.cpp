@@ -10,6 +10,7 @@
 #include <string>
 
 #include "golden.hpp"
+#include "problem_count.hpp"
 #include "profile/law_checks.hpp"
 #include "viapoint/core/error.hpp"
 
@@ -97,7 +98,7 @@ TEST(BlendedLines, RestsAtRepeatedPoints) {
 }
 
 TEST(BlendedLines, NamesTheLeastAccelerationThatWorks) {
-  for (int seed = 0; seed < 2000; ++seed) {
+  for (int seed = 0; seed < problems(2000); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
     std::uniform_real_distribution<double> any(-3.0, 3.0);

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "golden.hpp"
+#include "problem_count.hpp"
 #include "profile/law_checks.hpp"
 #include "viapoint/core/error.hpp"
 
@@ -59,7 +60,7 @@ TEST(Quintic, GoldenTextbookSection1FindsTheOvershootInsideTheInterval) {
 }
 
 TEST(Polynomial, MeetsItsBoundaryStatesFromAnyStartTime) {
-  for (int seed = 0; seed < 5000; ++seed) {
+  for (int seed = 0; seed < problems(5000); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
     std::uniform_real_distribution<double> any(-10.0, 10.0);
@@ -124,7 +125,7 @@ TEST(AxisLaw, RefusesPartsThatDoNotMeetAndTimesOutside) {
 }
 
 TEST(AxisLaw, FollowsAJerkProfile) {
-  for (int seed = 0; seed < 2000; ++seed) {
+  for (int seed = 0; seed < problems(2000); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
     std::uniform_real_distribution<double> exponent(-2.0, 2.0);

@@ -7,6 +7,7 @@
 #include <random>
 #include <string>
 
+#include "problem_count.hpp"
 #include "profile/law_checks.hpp"
 #include "viapoint/core/error.hpp"
 #include "viapoint/profile/parabolic_blends.hpp"
@@ -24,7 +25,7 @@ TEST(PseudoViaPoints, StandOnALineThroughThePoint) {
 }
 
 TEST(PseudoViaPoints, TakeTheMotionThroughAtTheWantedVelocity) {
-  for (int seed = 0; seed < 2000; ++seed) {
+  for (int seed = 0; seed < problems(2000); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
     std::uniform_real_distribution<double> any(-3.0, 3.0), seconds(0.5, 2.0), share(0.1, 0.4);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "golden.hpp"
+#include "problem_count.hpp"
 #include "profile/law_checks.hpp"
 #include "viapoint/core/error.hpp"
 
@@ -35,7 +36,7 @@ TEST(QuarticTransitions, GoldenTextbookSection3JointMove) {
 }
 
 TEST(QuarticTransitions, AreContinuousInAccelerationThroughAnyNumberOfPoints) {
-  for (int seed = 0; seed < 3000; ++seed) {
+  for (int seed = 0; seed < problems(3000); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
     std::uniform_real_distribution<double> any(-3.0, 3.0);

@@ -7,6 +7,7 @@
 #include <functional>
 #include <limits>
 
+#include "problem_count.hpp"
 #include "profile/state_judge.hpp"
 
 namespace viapoint {
@@ -15,7 +16,7 @@ namespace {
 TEST(StateSoundness, HoldsOfEverythingThatTheJudgePasses) {
   StateToState motion;
   for (const std::size_t joints : {std::size_t{2}, std::size_t{7}}) {
-    for (std::uint64_t seed = 0; seed < 15'000; ++seed) {
+    for (std::uint64_t seed = 0; seed < problems<std::uint64_t>(15'000); ++seed) {
       SCOPED_TRACE("seed " + std::to_string(seed) + ", joints " + std::to_string(joints));
       const testing::StateProblem problem = testing::state_problem(seed, joints, 3.0);
       ASSERT_EQ(motion.plan(problem.start, problem.end, problem.limits, problem.options),
@@ -34,7 +35,7 @@ TEST(StateSoundness, HoldsOfJointsThatWaitForMonths) {
   testing::Dice dice(1);
   StateToState motion;
   const AxisLimits limits = AxisLimits::symmetric(1.0, 5.0, 50.0);
-  for (int problem = 0; problem < 2'000; ++problem) {
+  for (int problem = 0; problem < problems(2'000); ++problem) {
     SCOPED_TRACE("problem " + std::to_string(problem));
     const AxisState start{0.0, dice.uniform(-0.9, 0.9), dice.uniform(-2.0, 2.0), 0.0};
     const AxisState end{dice.uniform(-2.0, 2.0), dice.uniform(-0.9, 0.9), 0.0, 0.0};
@@ -48,7 +49,7 @@ TEST(StateSoundness, HoldsOfJointsThatWaitForMonths) {
 TEST(StateSoundness, IsDeniedToEveryPlantedFault) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   int planted = 0;
-  for (std::uint64_t seed = 0; seed < 2'000; ++seed) {
+  for (std::uint64_t seed = 0; seed < problems<std::uint64_t>(2'000); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     testing::Dice dice(seed);
     const AxisLimits l = testing::random_limits(dice, 1.0);
@@ -84,7 +85,7 @@ TEST(StateSoundness, IsDeniedToEveryPlantedFault) {
     elsewhere.q += 1e-6 * size;
     EXPECT_FALSE(python::is_sound(move, elsewhere, l));
   }
-  EXPECT_EQ(planted, 20'000);
+  EXPECT_EQ(planted, problems(20'000));
 }
 
 TEST(StateSoundness, SeesAMillionthOverALimitThatIsSmallBesideTheOther) {

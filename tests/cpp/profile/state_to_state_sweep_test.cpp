@@ -1,6 +1,7 @@
 // The first of the problems that tools/bench runs by the million.
 #include <gtest/gtest.h>
 
+#include "problem_count.hpp"
 #include "profile/state_judge.hpp"
 
 namespace viapoint {
@@ -8,7 +9,7 @@ namespace {
 
 TEST(StateToState, SolvesTheFirstHundredThousandOfTheSweepAndEveryMotionIsSound) {
   StateToState motion;
-  for (std::uint64_t seed = 0; seed < 100'000; ++seed) {
+  for (std::uint64_t seed = 0; seed < problems<std::uint64_t>(100'000); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const testing::StateProblem problem = testing::state_problem(seed, 7, 3.0);
     ASSERT_EQ(motion.plan(problem.start, problem.end, problem.limits, problem.options),
@@ -23,7 +24,7 @@ TEST(StateToState, SolvesTheFirstHundredThousandOfTheSweepAndEveryMotionIsSound)
 TEST(StateToState, KeepsSlowLimitsBesideVeryFastOnesAllButAlways) {
   StateToState motion;
   int beyond = 0;
-  for (std::uint64_t seed = 0; seed < 10'000; ++seed) {
+  for (std::uint64_t seed = 0; seed < problems<std::uint64_t>(10'000); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const testing::StateProblem problem = testing::state_problem(seed, 7, 4.0);
     ASSERT_EQ(motion.plan(problem.start, problem.end, problem.limits, problem.options),
@@ -39,7 +40,7 @@ TEST(StateToState, KeepsSlowLimitsBesideVeryFastOnesAllButAlways) {
 TEST(StateToState, IsJudgedByAJudgeWhoSeesAMillionth) {
   int over_limits = 0, beside_end = 0, moving = 0;
   StateToState motion;
-  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+  for (std::uint64_t seed = 0; seed < problems<std::uint64_t>(200); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const testing::StateProblem problem = testing::state_problem(seed, 1, 1.0);
     ASSERT_EQ(motion.plan(problem.start, problem.end, problem.limits, problem.options),
@@ -62,7 +63,7 @@ TEST(StateToState, IsJudgedByAJudgeWhoSeesAMillionth) {
       EXPECT_NE(testing::judge(other, motion).beyond(1e-8, 1e-9), "");
     }
   }
-  EXPECT_GT(moving, 190);
+  EXPECT_GT(moving, problems(190));
   EXPECT_GT(over_limits, moving / 2);  // those slowed down to a duration have room
   EXPECT_GT(beside_end, moving / 2);   // some ends are much nearer than the motion is long
 }

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "problem_count.hpp"
 #include "profile/axis_move_checks.hpp"
 
 namespace viapoint {
@@ -60,7 +61,7 @@ double quickest(const AxisRequest& r) {
 
 TEST(StateToState, TakesTheTimeOfTheSlowestAxisOrJustAsMuchMoreAsAnAxisNeeds) {
   int longer = 0;
-  for (int seed = 0; seed < 10000; ++seed) {
+  for (int seed = 0; seed < problems(10000); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
     const Requests all = random_requests(random, 1 + static_cast<int>(random() % 7));
@@ -84,12 +85,12 @@ TEST(StateToState, TakesTheTimeOfTheSlowestAxisOrJustAsMuchMoreAsAnAxisNeeds) {
     }
     if (HasFailure()) return;
   }
-  EXPECT_GT(longer, 1000);  // that there are axes with impossible durations among them
+  EXPECT_GT(longer, problems(1000));  // that there are axes with impossible durations among them
 }
 
 TEST(StateToState, LastsAsLongAsAskedOrUntilTheNextPossibleDuration) {
   int exact = 0;
-  for (int seed = 0; seed < 20000; ++seed) {
+  for (int seed = 0; seed < problems(20000); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
     Requests all;
@@ -104,7 +105,7 @@ TEST(StateToState, LastsAsLongAsAskedOrUntilTheNextPossibleDuration) {
     if (motion.duration() == options.least_duration) ++exact;
     if (HasFailure()) return;
   }
-  EXPECT_GT(exact, 10000);
+  EXPECT_GT(exact, problems(10000));
 }
 
 TEST(StateToState, PassesOverADurationThatWouldOvershoot) {
@@ -122,7 +123,7 @@ TEST(StateToState, PassesOverADurationThatWouldOvershoot) {
 }
 
 TEST(StateToState, RoundsUpToWholeCycles) {
-  for (int seed = 0; seed < 5000; ++seed) {
+  for (int seed = 0; seed < problems(5000); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
     const Requests all = random_requests(random, 3);
@@ -157,7 +158,7 @@ TEST(StateToState, LeavesAxesToThemselvesWithoutSynchronization) {
 }
 
 TEST(StateToState, LetsAnAxisThatHasArrivedGoOnAtItsEndVelocity) {
-  for (int seed = 0; seed < 2000; ++seed) {
+  for (int seed = 0; seed < problems(2000); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
     const Requests all = random_requests(random, 3);
@@ -217,7 +218,7 @@ Requests random_line(std::mt19937_64& random, std::vector<double>& direction) {
 }
 
 TEST(StateToState, StaysOnTheStraightLine) {
-  for (int seed = 0; seed < 5000; ++seed) {
+  for (int seed = 0; seed < problems(5000); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
     std::vector<double> direction;

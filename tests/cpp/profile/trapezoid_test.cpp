@@ -7,6 +7,7 @@
 #include <string>
 
 #include "golden.hpp"
+#include "problem_count.hpp"
 #include "profile/law_checks.hpp"
 #include "viapoint/core/error.hpp"
 
@@ -79,7 +80,7 @@ TEST(Lspb, RestsWhereThereIsNothingToMove) {
 }
 
 TEST(Lspb, RunsFromRestToRestInTheGivenTime) {
-  for (int seed = 0; seed < 3000; ++seed) {
+  for (int seed = 0; seed < problems(3000); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
     std::uniform_real_distribution<double> any(-5.0, 5.0), share(0.01, 1.0);
@@ -120,7 +121,7 @@ TEST(BangBang, HoldsItsAccelerationBothWays) {
 }
 
 TEST(QuickestTrapezoid, IsAtALimitAllTheTime) {
-  for (int seed = 0; seed < 5000; ++seed) {
+  for (int seed = 0; seed < problems(5000); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
     std::uniform_real_distribution<double> any(-3.0, 3.0), decades(-3.0, 3.0);

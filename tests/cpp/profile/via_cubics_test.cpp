@@ -8,6 +8,7 @@
 #include <string>
 
 #include "golden.hpp"
+#include "problem_count.hpp"
 #include "profile/law_checks.hpp"
 #include "viapoint/core/error.hpp"
 
@@ -52,7 +53,7 @@ TEST(ViaCubics, SlopeHeuristicIsZeroAtReversalsAndTheMeanElsewhere) {
 }
 
 TEST(ViaCubics, SplineKeepsAccelerationContinuousOverManyPoints) {
-  for (int seed = 0; seed < 3000; ++seed) {
+  for (int seed = 0; seed < problems(3000); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
     std::uniform_real_distribution<double> any(-3.0, 3.0);
@@ -95,7 +96,7 @@ struct Way {
 };
 
 TEST(ViaCubics, NaturalSplineHasNoAccelerationAtItsEnds) {
-  for (int seed = 0; seed < 2000; ++seed) {
+  for (int seed = 0; seed < problems(2000); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const Way way(seed);
     const AxisLaw law =
@@ -110,7 +111,7 @@ TEST(ViaCubics, NaturalSplineHasNoAccelerationAtItsEnds) {
 }
 
 TEST(ViaCubics, PeriodicSplineCanBeRepeated) {
-  for (int seed = 0; seed < 2000; ++seed) {
+  for (int seed = 0; seed < problems(2000); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const Way way(seed);
     const AxisLaw law = via_cubics(way.points, way.durations,

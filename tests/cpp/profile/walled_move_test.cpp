@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "problem_count.hpp"
 #include "profile/axis_move_checks.hpp"
 #include "viapoint/profile/state_to_state.hpp"
 
@@ -99,7 +100,7 @@ AxisRequest random_walled_request(std::mt19937_64& random) {
 
 TEST(PositionLimits, HoldAllTheWay) {
   int longer = 0;
-  for (int seed = 0; seed < 10000; ++seed) {
+  for (int seed = 0; seed < problems(10000); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
     const AxisRequest r = random_walled_request(random);
@@ -113,7 +114,7 @@ TEST(PositionLimits, HoldAllTheWay) {
     if (move.total > free.total * (1.0 + 1e-9)) ++longer;
     if (HasFailure()) return;
   }
-  EXPECT_GT(longer, 2500);  // that the walls were in the way
+  EXPECT_GT(longer, problems(2500));  // that the walls were in the way
 }
 
 /// The sum of the two ways, infinite where one leaves the walls.
@@ -133,7 +134,7 @@ double through(const AxisRequest& r, const AxisState& middle) {
 
 TEST(PositionLimits, CostNoMoreTimeThanAnyTouchOfAFineGrid) {
   int compared = 0;
-  for (int seed = 0; seed < 600; ++seed) {
+  for (int seed = 0; seed < problems(600); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
     const AxisRequest r = random_walled_request(random);
@@ -156,12 +157,12 @@ TEST(PositionLimits, CostNoMoreTimeThanAnyTouchOfAFineGrid) {
     EXPECT_LE(move.total, best * (1.0 + 1e-7));
     if (HasFailure()) return;
   }
-  EXPECT_GT(compared, 300);
+  EXPECT_GT(compared, problems(300));
 }
 
 TEST(PositionLimits, CostNoMoreTimeThanRandomDetours) {
   int compared = 0;
-  for (int seed = 0; seed < 1000; ++seed) {
+  for (int seed = 0; seed < problems(1000); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
     const AxisRequest r = random_walled_request(random);
@@ -177,7 +178,7 @@ TEST(PositionLimits, CostNoMoreTimeThanRandomDetours) {
     }
     if (HasFailure()) return;
   }
-  EXPECT_GT(compared, 5000);
+  EXPECT_GT(compared, problems(5000));
 }
 
 constexpr AxisLimits between(double low, double high) {
@@ -218,7 +219,7 @@ TEST(PositionLimits, NameWhatCannotBe) {
 }
 
 TEST(PositionLimits, ChangeNothingWhereTheyAreNotMet) {
-  for (int seed = 0; seed < 3000; ++seed) {
+  for (int seed = 0; seed < problems(3000); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
     AxisRequest r = testing::random_request(random, 0.7);
@@ -237,7 +238,7 @@ TEST(PositionLimits, ChangeNothingWhereTheyAreNotMet) {
 /// Limits that were lowered: the start is outside, and may move outward still.
 TEST(PositionLimits, LetAStartThatIsOutsideComeIn) {
   int solved = 0;
-  for (int seed = 0; seed < 5000; ++seed) {
+  for (int seed = 0; seed < problems(5000); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
     AxisRequest r = testing::random_request(random, 0.7);
@@ -261,12 +262,12 @@ TEST(PositionLimits, LetAStartThatIsOutsideComeIn) {
     ++solved;
     if (HasFailure()) return;
   }
-  EXPECT_EQ(solved, 5000);
+  EXPECT_EQ(solved, problems(5000));
 }
 
 TEST(PositionLimits, HoldForEverySynchronizationAndDuration) {
   int planned = 0, as_asked = 0;
-  for (int seed = 0; seed < 10000; ++seed) {
+  for (int seed = 0; seed < problems(10000); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
     std::vector<AxisRequest> all;
@@ -317,8 +318,8 @@ TEST(PositionLimits, HoldForEverySynchronizationAndDuration) {
     }
     if (HasFailure()) return;
   }
-  EXPECT_GT(planned, 9900);
-  EXPECT_GT(as_asked, 8500);
+  EXPECT_GT(planned, problems(9900));
+  EXPECT_GT(as_asked, problems(8500));
 }
 
 TEST(PositionLimits, HoldAlongALine) {
@@ -326,7 +327,7 @@ TEST(PositionLimits, HoldAlongALine) {
   options.synchronization = Synchronization::kLine;
   StateToState motion;
   int turned = 0;
-  for (int seed = 0; seed < 3000; ++seed) {
+  for (int seed = 0; seed < problems(3000); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 random(static_cast<std::uint64_t>(seed));
     const AxisRequest r = random_walled_request(random);
@@ -359,7 +360,7 @@ TEST(PositionLimits, HoldAlongALine) {
     if (extent_of(motion.axis(0)).high > std::max(start[0].q, end[0].q) + 1e-6) ++turned;
     if (HasFailure()) return;
   }
-  EXPECT_GT(turned, 500);
+  EXPECT_GT(turned, problems(500));
   // A joint outside its limits that the line does not move never comes in.
   std::vector<AxisState> start(2), end(2);
   end[0].q = 1.0;

@@ -5,6 +5,7 @@
 #include <random>
 #include <string>
 
+#include "problem_count.hpp"
 #include "viapoint/core/atomic_file.hpp"
 #include "viapoint/program/motion_program.hpp"
 
@@ -154,7 +155,7 @@ std::string message_of(const std::string& text) {
 }
 
 TEST(ProgramJson, ReadsBackToTheLastBit) {
-  for (unsigned seed = 0; seed < 2000; ++seed) {
+  for (unsigned seed = 0; seed < problems(2000U); ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
     const MotionProgram program = random_program(random);
@@ -240,7 +241,7 @@ TEST(ProgramJson, RefusesWhatItWouldOtherwiseIgnore) {
 TEST(ProgramJson, RefusesEndlessBracketsByName) {
   for (const char* bracket : {"[", "{\"a\":"}) {
     std::string text;
-    for (int i = 0; i < 100'000; ++i) text += bracket;
+    for (int i = 0; i < problems(100'000); ++i) text += bracket;
     EXPECT_NE(message_of(text).find("64 deep"), std::string::npos);
   }
   EXPECT_NE(message_of(std::string(100'000, '[') + std::string(100'000, ']')).find("64 deep"),

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "problem_count.hpp"
 #include "realtime/random_motion.hpp"
 #include "viapoint/core/error.hpp"
 #include "viapoint/realtime/controller_loop.hpp"
@@ -74,7 +75,7 @@ TEST(Admission, RefusesAViolationPlantedBetweenTwoSamplesAMicrosecondApart) {
   pieces.push_back(back);
   append_wait(pieces, JointVector::Zero(1), 1e-3, 3);
   const Trajectory trajectory(pieces, kLimits);
-  for (int k = 0; k < 2000; ++k) {
+  for (int k = 0; k < problems(2000); ++k) {
     ASSERT_LE(std::abs(trajectory.at(k * 1e-6).qddd[0]), kLimits.jerk[0]) << k;
   }
   const Problem problem = refusal(pieces, kLimits, JointVector::Zero(1));

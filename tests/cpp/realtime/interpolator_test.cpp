@@ -6,6 +6,7 @@
 #include <random>
 #include <vector>
 
+#include "problem_count.hpp"
 #include "realtime/no_allocation_scope.hpp"
 #include "realtime/random_motion.hpp"
 #include "realtime/rate_path.hpp"
@@ -15,12 +16,7 @@ namespace {
 
 constexpr std::chrono::nanoseconds kCycle{2'000'000};
 constexpr double kSeconds = 2e-3;
-#ifdef __SANITIZE_THREAD__
-// These tests have one thread: ThreadSanitizer only makes them slow.
-constexpr unsigned kMotions = 100;
-#else
-constexpr unsigned kMotions = 2000;
-#endif
+constexpr unsigned kMotions = problems(2000U);
 
 /// What a tick tells, as the log would hold it.
 LogRecord tick(Interpolator& interpolator) {
@@ -70,7 +66,7 @@ TEST(Interpolator, HoldsPositionUntilAMotionBegins) {
 }
 
 TEST(Interpolator, IsTheTrajectoryAtEachCycleToTheLastBit) {
-  for (unsigned seed = 0; seed < 500; ++seed) {
+  for (unsigned seed = 0; seed < problems(500U); ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
     const Motion motion = random_motion(random);
@@ -308,7 +304,7 @@ TEST(Interpolator, OverrideSettlesExactlyOnWhatWasAskedFor) {
 TEST(Interpolator, PauseRestsAndResumeGoesOnFromThere) {
   const Motion motion = long_move(2.0, 20.0, 200.0);
   Interpolator interpolator = start(motion);
-  for (int k = 0; k < 1000; ++k) static_cast<void>(tick(interpolator));
+  for (int k = 0; k < problems(1000); ++k) static_cast<void>(tick(interpolator));
   interpolator.wish(Wish::kPause);
   EXPECT_EQ(tick(interpolator).state, RunState::kPausing);
   for (int k = 0; k < 200; ++k) static_cast<void>(tick(interpolator));

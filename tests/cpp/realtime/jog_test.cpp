@@ -9,6 +9,7 @@
 #include <random>
 #include <string>
 
+#include "problem_count.hpp"
 #include "realtime/no_allocation_scope.hpp"
 #include "realtime/random_motion.hpp"
 #include "viapoint/realtime/interpolator.hpp"
@@ -107,7 +108,7 @@ JointVector random_wish(std::mt19937& random, const JointLimits& limits) {
 
 TEST(Jog, KeepsEveryLimitWhateverIsWished) {
   int position_blocks = 0, coupling_blocks = 0;
-  for (unsigned seed = 0; seed < 3000; ++seed) {
+  for (unsigned seed = 0; seed < problems(3000U); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937 random(seed);
     const JointLimits limits = random_limits(random);
@@ -146,8 +147,8 @@ TEST(Jog, KeepsEveryLimitWhateverIsWished) {
     EXPECT_TRUE(now.qd.isZero(0.0) && now.qdd.isZero(0.0) && now.qddd.isZero(0.0));
     if (HasFailure()) return;
   }
-  EXPECT_GT(position_blocks, 200);
-  EXPECT_GT(coupling_blocks, 200);
+  EXPECT_GT(position_blocks, problems(200));
+  EXPECT_GT(coupling_blocks, problems(200));
 }
 
 /// Ticks until the jog has ended, or `most` cycles; the last setpoint.

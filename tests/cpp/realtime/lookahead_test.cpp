@@ -7,6 +7,7 @@
 #include <random>
 #include <vector>
 
+#include "problem_count.hpp"
 #include "realtime/random_motion.hpp"
 
 namespace viapoint {
@@ -17,11 +18,7 @@ bool inside(double value, const JointRanges& ranges, int joint, double slack) {
 }
 
 constexpr int kAnyNumber = 1 << 20;
-#ifdef __SANITIZE_THREAD__
-constexpr unsigned kMotions = 200;
-#else
-constexpr unsigned kMotions = 2000;
-#endif
+constexpr unsigned kMotions = problems(2000U);
 
 double uniform(std::mt19937& random, double low, double high) {
   return std::uniform_real_distribution<double>(low, high)(random);

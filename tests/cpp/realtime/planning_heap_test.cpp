@@ -4,6 +4,7 @@
 #include <array>
 #include <random>
 
+#include "problem_count.hpp"
 #include "realtime/no_allocation_scope.hpp"
 #include "viapoint/profile/state_to_state.hpp"
 
@@ -16,7 +17,7 @@ TEST(StateToState, LeavesTheHeapAloneWhereverItIsPlannedAndRead) {
   StateToState motion;
   int solved = 0;
   const NoAllocationScope scope;
-  for (int k = 0; k < 20000; ++k) {
+  for (int k = 0; k < problems(20000); ++k) {
     std::array<AxisState, 7> start, end;
     std::array<AxisLimits, 7> limits;
     for (std::size_t i = 0; i < 7; ++i) {
@@ -34,7 +35,7 @@ TEST(StateToState, LeavesTheHeapAloneWhereverItIsPlannedAndRead) {
     if (motion.at(0.5 * motion.duration()).q.size() != 7) break;
   }
   EXPECT_EQ(scope.calls(), 0U);
-  EXPECT_GT(solved, 5000);
+  EXPECT_GT(solved, problems(5000));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "problem_count.hpp"
 #include "realtime/random_motion.hpp"
 #include "viapoint/core/error.hpp"
 #include "viapoint/realtime/controller_loop.hpp"
@@ -27,7 +28,7 @@ JointLimits walled_limits() {
 
 TEST(SimulateJog, KeepsEveryLimitWheneverItIsCalled) {
   const JointLimits limits = walled_limits();
-  for (unsigned seed = 0; seed < 300; ++seed) {
+  for (unsigned seed = 0; seed < problems(300U); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 random(seed);
     std::uniform_real_distribution<double> any(-1.0, 1.0);

@@ -7,6 +7,7 @@
 #include <limits>
 #include <random>
 
+#include "problem_count.hpp"
 #include "trajectory/trajectory_fixtures.hpp"
 #include "viapoint/trajectory/bernstein_composition.hpp"
 
@@ -39,7 +40,7 @@ TEST(BernsteinPolynomial, EvaluatesTheParabola) {
 }
 
 TEST(BernsteinPolynomial, SplitHalvesAreTheSameCurve) {
-  for (unsigned seed = 0; seed < 500; ++seed) {
+  for (unsigned seed = 0; seed < problems(500U); ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937_64 random(seed);
     const auto f = random_polynomial(random);
@@ -67,7 +68,7 @@ TEST(Raise, FindsTheTopOfAParabolaOffTheMiddle) {
 
 TEST(Raise, BoundIsNeverBelowASampleAndTight) {
   constexpr double kTolerance = 1e-10;
-  for (unsigned seed = 0; seed < 2000; ++seed) {
+  for (unsigned seed = 0; seed < problems(2000U); ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937_64 random(seed);
     const auto f = random_polynomial(random);
@@ -114,7 +115,7 @@ TEST(Raise, EndsWhereTheToleranceIsBelowRounding) {
 }
 
 TEST(BernsteinComposition, AgreesWithTheChainRuleOfThePiece) {
-  for (unsigned seed = 0; seed < 2000; ++seed) {
+  for (unsigned seed = 0; seed < problems(2000U); ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937_64 random(seed);
     TrajectoryPiece piece = random_piece(random, 1);
@@ -134,7 +135,7 @@ TEST(BernsteinComposition, AgreesWithTheChainRuleOfThePiece) {
 
 TEST(BernsteinComposition, MagnitudeIsNoLessThanAnyCoefficientAndTightOnAStraightPath) {
   std::mt19937_64 random(11);
-  for (int trial = 0; trial < 2000; ++trial) {
+  for (int trial = 0; trial < problems(2000); ++trial) {
     SCOPED_TRACE(trial);
     TrajectoryPiece piece = random_piece(random, 1);
     const bool straight = trial % 2 == 0;

@@ -8,6 +8,7 @@
 #include <random>
 #include <vector>
 
+#include "problem_count.hpp"
 #include "trajectory/trajectory_fixtures.hpp"
 #include "viapoint/trajectory/trajectory.hpp"
 
@@ -46,7 +47,7 @@ double sampled_maximum(const std::function<double(double)>& f, int samples) {
 TEST(CertificateSearch, BoundsRandomPiecesFromAboveAndTightly) {
   // Limits of 1 make 1e-9 absolute below one, relative above.
   const JointLimits limits = uniform_limits(1, 1e3, 1.0, 1.0, 1.0);
-  for (unsigned seed = 0; seed < 3000; ++seed) {
+  for (unsigned seed = 0; seed < problems(3000U); ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937_64 random(seed);
     const TrajectoryPiece piece = random_piece(random, 1);
@@ -69,7 +70,7 @@ TEST(CertificateSearch, BoundsRandomPiecesFromAboveAndTightly) {
 }
 
 TEST(CertificateSearch, BoundsManyJointsAndPiecesAsTheyWouldBeAlone) {
-  for (unsigned seed = 0; seed < 300; ++seed) {
+  for (unsigned seed = 0; seed < problems(300U); ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937_64 random(seed);
     std::vector<TrajectoryPiece> pieces;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "problem_count.hpp"
 #include "trajectory/time_parameterizer_problems.hpp"
 #include "viapoint/core/error.hpp"
 #include "viapoint/profile/jerk_profile.hpp"
@@ -52,7 +53,7 @@ TEST(ExtremeLimits, TimeACornerOrRefuseItByName) {
 
 /// The end is reached at rest, no limit is left anywhere, and the time is that of the seven phases.
 TEST(ExtremeLimits, TimeALineExactlyWhateverTheRatioOfLimits) {
-  for (std::uint64_t seed = 0; seed < 5000; ++seed) {
+  for (std::uint64_t seed = 0; seed < problems<std::uint64_t>(5000); ++seed) {
     SCOPED_TRACE(::testing::Message() << "seed " << seed);
     Random random(seed);
     const double length = decades(random, 1e-6, 1e6);
@@ -100,7 +101,7 @@ TEST(ExtremeLimits, NameWhatIsExtreme) {
 
 /// Corners under limits of any size: certified, ends met, or refused as too extreme.
 TEST(ExtremeLimits, TimeCornersWhateverTheRatioOfLimits) {
-  for (std::uint64_t seed = 0; seed < 1000; ++seed) {
+  for (std::uint64_t seed = 0; seed < problems<std::uint64_t>(1000); ++seed) {
     SCOPED_TRACE(::testing::Message() << "seed " << seed);
     Random random(seed);
     const int joints = 1 + static_cast<int>(seed % 4) + 1;
@@ -133,7 +134,7 @@ TEST(ExtremeLimits, TimeCornersWhateverTheRatioOfLimits) {
 }
 
 TEST(ExtremeLimits, TimeMovesFarFromZeroSoThatTheyAreCertified) {
-  for (std::uint64_t seed = 0; seed < 400; ++seed) {
+  for (std::uint64_t seed = 0; seed < problems<std::uint64_t>(400); ++seed) {
     SCOPED_TRACE(::testing::Message() << "seed " << seed);
     Random random(seed);
     const double far = decades(random, 1.0, 1e13);

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <random>
 
+#include "problem_count.hpp"
 #include "viapoint/trajectory/trajectory_piece.hpp"
 
 namespace viapoint {
@@ -45,7 +46,7 @@ Rates sampled(const TrajectoryPiece& piece, double from, double to) {
 }
 
 TEST(TimingSamples, BoundsAreNeverBelowWhatIsReached) {
-  for (std::uint64_t seed = 0; seed < 2000; ++seed) {
+  for (std::uint64_t seed = 0; seed < problems<std::uint64_t>(2000); ++seed) {
     SCOPED_TRACE(::testing::Message() << "seed " << seed);
     const Case problem = random_case(seed);
     const double from = 0.25 * static_cast<double>(seed % 4),

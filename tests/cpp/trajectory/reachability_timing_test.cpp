@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "problem_count.hpp"
 #include "trajectory/time_parameterizer_problems.hpp"
 #include "viapoint/core/error.hpp"
 #include "viapoint/trajectory/certificate.hpp"
@@ -14,11 +15,7 @@
 namespace viapoint::testing {
 namespace {
 
-#ifdef __SANITIZE_ADDRESS__
-constexpr unsigned kProblems = 20;
-#else
-constexpr unsigned kProblems = 1000;
-#endif
+constexpr unsigned kProblems = problems(1000U);
 
 /// Jerk so high that the certificate has nothing to say of it.
 JointLimits without_jerk(JointLimits limits) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "problem_count.hpp"
 #include "trajectory/time_parameterizer_problems.hpp"
 #include "viapoint/core/error.hpp"
 #include "viapoint/profile/jerk_profile.hpp"
@@ -141,7 +142,7 @@ void expect_sound_and_quick(const JointPath& path, const JointLimits& limits, in
 }
 
 TEST(TimeParameterizer, KeepsLimitsOnRandomWalksWithCorners) {
-  for (std::uint64_t seed = 0; seed < 1000; ++seed) {
+  for (std::uint64_t seed = 0; seed < problems<std::uint64_t>(1000); ++seed) {
     SCOPED_TRACE(::testing::Message() << "seed " << seed);
     Random random(seed);
     const int joints = 2 + static_cast<int>(seed % 7);
@@ -154,7 +155,7 @@ TEST(TimeParameterizer, KeepsLimitsOnRandomWalksWithCorners) {
 }
 
 TEST(TimeParameterizer, KeepsLimitsWhereLegsDifferByDecades) {
-  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+  for (std::uint64_t seed = 0; seed < problems<std::uint64_t>(300); ++seed) {
     SCOPED_TRACE(::testing::Message() << "seed " << seed);
     Random random(seed);
     const int joints = 2 + static_cast<int>(seed % 6);
@@ -166,7 +167,7 @@ TEST(TimeParameterizer, KeepsLimitsWhereLegsDifferByDecades) {
 }
 
 TEST(TimeParameterizer, KeepsLimitsOnRandomQuinticSplines) {
-  for (std::uint64_t seed = 0; seed < 1000; ++seed) {
+  for (std::uint64_t seed = 0; seed < problems<std::uint64_t>(1000); ++seed) {
     SCOPED_TRACE(::testing::Message() << "seed " << seed);
     Random random(seed);
     const int joints = 1 + static_cast<int>(seed % 7);
@@ -178,7 +179,7 @@ TEST(TimeParameterizer, KeepsLimitsOnRandomQuinticSplines) {
 }
 
 TEST(TimeParameterizer, KeepsRateCeilingsAndScalesOfPieces) {
-  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+  for (std::uint64_t seed = 0; seed < problems<std::uint64_t>(300); ++seed) {
     SCOPED_TRACE(::testing::Message() << "seed " << seed);
     Random random(seed);
     const JointPath plain = cornered_path(random_walk(random, 6, 4, 0.1, 0.6), 0.01);
@@ -250,7 +251,7 @@ TEST(TimeParameterizer, DoesNotCareForTheScaleOfSThatPiecesComeIn) {
 }
 
 TEST(TimeParameterizer, IsAboutAsQuickAsStoppingWhereCornersAreTiny) {
-  for (std::uint64_t seed = 0; seed < 500; ++seed) {
+  for (std::uint64_t seed = 0; seed < problems<std::uint64_t>(500); ++seed) {
     SCOPED_TRACE(::testing::Message() << "seed " << seed);
     Random random(seed);
     const int joints = 2 + static_cast<int>(seed % 6);
