@@ -9,34 +9,37 @@ namespace {
 
 /// Rates that differ by less are the same: a step of this size is far below every limit's slack.
 constexpr double kSameRate = 1e-12;
-/// A step of the way back that comes so near to slope 0 is one that lands there.
-constexpr double kRounding = 1e-9;
 /// Largest change of the rate in a cycle, and cycles to get there, where the joints would allow
 /// more (at rest they allow anything).
-constexpr double kMaxRateStep = 0.05;
-constexpr double kCyclesToMaxSlope = 4.0;
-/// A second, weaker step back for what the linear estimate of the room did not see.
-constexpr double kWeaker = 0.9;
-/// Pushes tried a cycle, and by how much each comes nearer to the proven one than the one before.
-constexpr int kTrials = 5;
-constexpr std::array<double, kTrials> kShrink = {0.8, 0.5, 0.5, 0.5, 0.0};
+constexpr double kMaxRateStep = 0.5;
+constexpr double kCyclesToMaxSlope = 1.0;
+/// Outside of [0, 1] by more than this, the end of a way back says nothing any more.
+constexpr double kFarOutside = 0.5;
+/// Pushes tried a cycle, and how much of one that has no way back is tried next.
+constexpr int kTrials = 3;
+constexpr double kShrink = 0.6;
+/// Least share of the strongest push that is tried.
+constexpr double kLeastShare = 1.0 / 64.0;
 
 Range hull(double a, double b) noexcept { return {std::min(a, b), std::max(a, b)}; }
 
-/// Takes ρ and α of `stretch` from a motion with γ = `gamma` that begins at `from`; false where ρ
-/// would leave [0, 1].
-bool take(RateStretch& stretch, const RateState& from, const RateState& to, double gamma) noexcept {
+Range within_unit(const Range& rate) noexcept {
+  return {std::clamp(rate.low, 0.0, 1.0), std::clamp(rate.high, 0.0, 1.0)};
+}
+
+/// Rates between two states with a constant γ between them.
+Range rates_between(const RateState& from, const RateState& to, double gamma) noexcept {
   Range rate = hull(from.rate, to.rate);
   if (from.slope * to.slope < 0.0) {
     const double turn = from.rate - 0.5 * from.slope * from.slope / gamma;
     rate.low = std::min(rate.low, turn);
     rate.high = std::max(rate.high, turn);
   }
-  if (rate.low < -kSameRate || rate.high > 1.0 + kSameRate) return false;
-  stretch.rate = {std::clamp(rate.low, 0.0, 1.0), std::clamp(rate.high, 0.0, 1.0)};
-  stretch.slope = hull(from.slope, to.slope);
-  stretch.curvature = gamma;
-  return true;
+  return rate;
+}
+
+bool leaves_unit(const Range& rate) noexcept {
+  return !(rate.low >= -kSameRate && rate.high <= 1.0 + kSameRate);
 }
 
 }  // namespace
@@ -55,8 +58,11 @@ RateGovernor::RateGovernor(const JointLimits& limits, double cycle)
   }
   constexpr double kWayBack = 1.5;
   constexpr double kMaxStride = 64.0;
+  int cycles = 0;
+  stride_ = 1;
+  for (int step = 0; step < kSteps; ++step) cycles += longest_step(step);
   stride_ = static_cast<int>(
-      std::clamp(std::ceil(kWayBack * longest / (kSteps * cycle)), 1.0, kMaxStride));
+      std::clamp(std::ceil(kWayBack * longest / (cycles * cycle)), 1.0, kMaxStride));
 }
 
 double RateGovernor::cell() const noexcept { return 0.5 * stride_ * cycle_; }
@@ -64,6 +70,8 @@ double RateGovernor::cell() const noexcept { return 0.5 * stride_ * cycle_; }
 void RateGovernor::reset() noexcept VIAPOINT_NONBLOCKING {
   plan_.steps = 0;
   plan_.position = 0;
+  gain_ = 0.0;
+  share_ = 1.0;
 }
 
 double RateGovernor::decide(const RateState& now, double target,
@@ -94,105 +102,114 @@ void RateGovernor::improve(const RateState& now, double target,
   const double base =
       changing() ? plan_.step[static_cast<std::size_t>(plan_.position)].curvature : 0.0;
   const double missing = target - end;
-
-  RateStretch stretch;
-  const double furthest = now.tau + cycle_ * (now.rate + cycle_ * max_slope_);
-  if (!lookahead.ranges(now.tau, furthest, stretch.path)) return;
-  const Range allowed{std::max(-max_curvature_, (-max_slope_ - now.slope) / cycle_),
-                      std::min(max_curvature_, (max_slope_ - now.slope) / cycle_)};
   // One cycle of γ and its undoing move the rate by at least γ cycle².
-  const double wanted = base + missing / (cycle_ * cycle_);
-  double push = 0.0;
-  // Again, because the push itself raises the rate within the cycle.
-  for (int pass = 0; pass < 2; ++pass) {
-    Range curvature = allowed;
-    stretch.slope = {now.slope, now.slope};
-    stretch.rate = hull(now.rate, std::clamp(now.after(cycle_, push).rate, 0.0, 1.0));
-    if (!limits_.room(stretch, cycle_, curvature)) return;
-    push = std::clamp(wanted, curvature.low, curvature.high);
-  }
+  double strongest = base + missing / (cycle_ * cycle_);
+  if (!strongest_push(now, strongest, lookahead, strongest)) return;
 
-  for (int trial = 0; trial < kTrials; ++trial) {
-    if ((push - base) * missing <= 0.0) return;
-    if (!prove(now, push, lookahead, trial_)) {
-      push = base + kShrink[static_cast<std::size_t>(trial)] * (push - base);
-      continue;
-    }
-    const double still_missing = target - trial_.end_rate;
-    if (still_missing * missing >= 0.0 || std::abs(still_missing) <= kSameRate) {
+  // As strong as was possible last time; less, where as much as last time would go too far.
+  double push = base + share_ * (strongest - base);
+  const double gain = std::exchange(gain_, 0.0);
+  if (gain * missing > 0.0 && std::abs(gain) > std::abs(missing)) {
+    push = base + missing / gain * (strongest - base);
+  }
+  int budget = kStepsACycle;
+  for (int trial = 0; trial < kTrials && (push - base) * missing > 0.0; ++trial) {
+    const Outcome outcome = prove(now, push, lookahead, trial_, budget);
+    const double gained = trial_.end_rate - end;
+    const double over = (gained - missing) * (missing > 0.0 ? 1.0 : -1.0);
+    if (outcome == Outcome::kProven && over <= kSameRate) {
       std::swap(plan_, trial_);
+      gain_ = gained;
+      share_ = std::min(1.0, 2.0 * share_);
       return;
     }
-    // Too far: the end is convex in the push, so the chord stays on the near side.
-    push = base + (push - base) * missing / (missing - still_missing);
+    if (outcome == Outcome::kNone) {
+      push = base + kShrink * (push - base);
+      share_ = std::max(kLeastShare, kShrink * share_);
+    } else {
+      // The end is convex in the push, so the chord stays on the near side.
+      push = base + (push - base) * missing / gained;
+    }
   }
 }
 
-bool RateGovernor::prove(RateState state, double push, const Lookahead& lookahead,
-                         Plan& plan) const noexcept VIAPOINT_NONBLOCKING {
+bool RateGovernor::strongest_push(const RateState& now, double wanted, const Lookahead& lookahead,
+                                  double& push) const noexcept VIAPOINT_NONBLOCKING {
+  RateStretch stretch;
+  const double furthest = now.tau + cycle_ * (now.rate + cycle_ * max_slope_);
+  if (!lookahead.ranges(now.tau, furthest, stretch.path)) return false;
+  stretch.slope = {now.slope, now.slope};
+  const double low = std::max(-max_curvature_, (-max_slope_ - now.slope) / cycle_);
+  const double high = std::min(max_curvature_, (max_slope_ - now.slope) / cycle_);
+  push = 0.0;
+  // Again, because the push itself raises the rate within the cycle.
+  for (int pass = 0; pass < 2; ++pass) {
+    stretch.rate = within_unit(hull(now.rate, now.after(cycle_, push).rate));
+    push = std::clamp(wanted, low, high);
+    if (!limits_.strongest(stretch, cycle_, push)) return false;
+  }
+  return true;
+}
+
+RateGovernor::Outcome RateGovernor::prove(RateState state, double push, const Lookahead& lookahead,
+                                          Plan& plan,
+                                          int& budget) const noexcept VIAPOINT_NONBLOCKING {
   plan.steps = 0;
   plan.position = 0;
   RateState next = state.after(cycle_, push);
   RateStretch stretch;
-  if (next.tau < state.tau || !take(stretch, state, next, push)) return false;
+  const Range rates = rates_between(state, next, push);
+  bool is_outside = leaves_unit(rates);
+  stretch.rate = within_unit(rates);
+  stretch.slope = hull(state.slope, next.slope);
+  stretch.curvature = push;
+  next.tau = std::max(next.tau, state.tau);
   if (!lookahead.ranges(state.tau, next.tau, stretch.path) || !limits_.kept(stretch)) {
-    return false;
+    return Outcome::kNone;
   }
   if (std::abs(next.slope) < kSameRate) next.slope = 0.0;
   plan.step[static_cast<std::size_t>(plan.steps++)] = {push, 1};
   state = next;
   while (state.slope != 0.0) {
-    if (plan.steps > kSteps || !step_back(state, lookahead, plan)) return false;
+    if (plan.steps > kSteps || --budget < 0 || !step_back(state, lookahead, plan)) {
+      return Outcome::kNone;
+    }
+    if (leaves_unit({state.rate, state.rate})) is_outside = true;
+    if (leaves_unit({state.rate + kFarOutside, state.rate - kFarOutside})) return Outcome::kNone;
   }
-  plan.end_rate = std::clamp(state.rate, 0.0, 1.0);
-  return true;
+  plan.end_rate = is_outside ? state.rate : std::clamp(state.rate, 0.0, 1.0);
+  return is_outside ? Outcome::kTooFar : Outcome::kProven;
 }
 
 bool RateGovernor::step_back(RateState& state, const Lookahead& lookahead,
                              Plan& plan) const noexcept VIAPOINT_NONBLOCKING {
-  const double longest = stride_ * cycle_;
+  // Until slope 0 and never past it, so that the rate stays between those here.
+  int cycles = longest_step(plan.steps - 1);
+  const double time = cycles * cycle_;
+  const double furthest = state.tau + time * (std::clamp(state.rate, 0.0, 1.0) +
+                                              0.5 * time * std::max(0.0, state.slope));
   RateStretch stretch;
-  const double furthest =
-      state.tau + longest * (state.rate + 0.5 * longest * std::max(0.0, state.slope));
   if (!lookahead.ranges(state.tau, furthest, stretch.path)) return false;
-
-  // Straight back to slope 0 where that is allowed; never past it, nor away from it unless forced.
-  const double wanted = -state.slope / cycle_;
-  const auto strongest = [&](int cycles, double& gamma) {
-    const double time = cycles * cycle_;
-    stretch.slope = {state.slope, state.slope};
-    stretch.rate = {state.rate, std::min(1.0, state.rate + time * std::max(0.0, state.slope))};
-    Range curvature{-max_curvature_, max_curvature_};
-    if (!limits_.room(stretch, time, curvature)) return false;
-    gamma = std::clamp(wanted, curvature.low, curvature.high);
-    return true;
-  };
-  double gamma = 0.0;
-  if (!strongest(1, gamma)) return false;
-  const int cycles = cycles_back(state.slope, gamma);
-  if (cycles > 1 && !strongest(cycles, gamma)) return false;
-  return try_step(state, gamma, furthest, stretch, plan) ||
-         try_step(state, kWeaker * gamma, furthest, stretch, plan);
-}
-
-int RateGovernor::cycles_back(double slope, double gamma) const noexcept VIAPOINT_NONBLOCKING {
-  if (gamma * slope > 0.0) return 1;
-  const double cycles = gamma == 0.0 ? stride_ : -slope / (gamma * cycle_);
-  return std::max(1, static_cast<int>(std::min(cycles, static_cast<double>(stride_))));
-}
-
-bool RateGovernor::try_step(RateState& state, double gamma, double furthest, RateStretch& stretch,
-                            Plan& plan) const noexcept VIAPOINT_NONBLOCKING {
-  const int cycles = cycles_back(state.slope, gamma);
+  stretch.rate = within_unit(hull(state.rate, state.rate + time * state.slope));
+  stretch.slope = {state.slope, state.slope};
   const double undone = -state.slope / cycle_;
-  const bool lands = cycles == 1 && gamma * undone > 0.0 &&
-                     std::abs(gamma) >= std::abs(undone) * (1.0 - kRounding);
-  if (lands) gamma = undone;
+  double gamma = std::clamp(undone, -max_curvature_, max_curvature_);
+  if (!limits_.strongest(stretch, time, gamma)) return false;
+  if (gamma * undone > 0.0 && std::abs(undone) <= cycles * std::abs(gamma)) {
+    cycles = static_cast<int>(std::ceil(undone / gamma));
+    gamma = undone / cycles;
+  }
   RateState next = state.after(cycles * cycle_, gamma);
-  if (lands) next.slope = 0.0;
-  const bool possible = take(stretch, state, next, gamma);
-  if (!possible || next.tau > furthest || std::abs(next.slope) > max_slope_) return false;
-  if (!limits_.kept(stretch)) return false;
+  if (gamma * undone > 0.0 && std::abs(next.slope) <= kSameRate) next.slope = 0.0;
+  next.tau = std::max(next.tau, state.tau);
+  if (gamma * undone < 0.0) {  // away from slope 0: a joint has forced it
+    stretch.rate = within_unit(rates_between(state, next, gamma));
+    stretch.slope = hull(state.slope, next.slope);
+    stretch.curvature = gamma;
+    if (next.tau > furthest || std::abs(next.slope) > max_slope_ || !limits_.kept(stretch)) {
+      return false;
+    }
+  }
   plan.step[static_cast<std::size_t>(plan.steps++)] = {gamma, cycles};
   state = next;
   return true;

@@ -1,6 +1,8 @@
 #include "viapoint/realtime/rate_limits.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace viapoint {
 namespace {
@@ -48,69 +50,76 @@ Range product(const Range& a, const Range& b) noexcept {
 }
 
 /// 0 where every end is finite, not a number elsewhere.
-[[gnu::always_inline]] inline Array2d doubt_of(const PairRange& x) noexcept {
-  return 0.0 * x.low + 0.0 * x.high;
+[[gnu::always_inline]] inline Array2d doubt_of(const PairRange& a, const PairRange& b,
+                                               const PairRange& c) noexcept {
+  return 0.0 * (a.low + a.high + b.low + b.high + c.low + c.high);
 }
-double doubt_of(const Range& x) noexcept { return 0.0 * x.low + 0.0 * x.high; }
+double doubt_of(const Range& x) noexcept { return 0.0 * (x.low + x.high); }
 
-/// What a limit leaves for `factor` times γ: -below <= factor γ <= above.
-struct Demand {
-  PairRange factor;
+/// What is left of a limit for `factor` times γ: -below <= factor γ <= above.
+struct Room {
   Array2d below, above;
 };
 
-/// `used` is what has been taken of the limit already. Half the slack, so that the strongest push
-/// passes kept() in spite of rounding.
-[[gnu::always_inline]] inline Demand demand_of(const PairRange& factor, const Array2d& limit,
-                                               const PairRange& used) noexcept {
+/// Half the slack, so that the strongest γ passes kept() in spite of rounding.
+[[gnu::always_inline]] inline Room room_beside(const PairRange& used,
+                                               const Array2d& limit) noexcept {
   const Array2d most = (1.0 + 0.5 * kRounding) * limit;
-  return {factor, most + used.low, most - used.high};
+  return {most + used.low, most - used.high};
 }
 
-/// The γ that meet every demand so far.
-class Allowed {
- public:
-  explicit Allowed(const Range& range) noexcept
-      : low_(Array2d::Constant(range.low)), high_(Array2d::Constant(range.high)) {}
+[[gnu::always_inline]] inline bool is_none(const Room& room) noexcept {
+  return !(room.below >= 0.0 && room.above >= 0.0).all();
+}
 
-  [[gnu::always_inline]] inline void narrow(const Demand& demand) noexcept {
-    if ((demand.below.min(demand.above) < 0.0).any()) {
-      for (int lane = 0; lane < 2; ++lane) narrow(demand, lane);
-      return;
-    }
-    const Array2d up = demand.factor.high.max(kNothing);
-    const Array2d down = (-demand.factor.low).max(kNothing);
-    high_ = high_.min((demand.above / up).min(demand.below / down));
-    low_ = low_.max(-(demand.above / down).min(demand.below / up));
+/// What the joints have taken of their limits at the start of a push, and what a push adds.
+struct Demand {
+  PairRange mixed;  ///< 3 q''ρ
+  PairRange acceleration, jerk;
+};
+
+[[gnu::always_inline]] inline Demand demand_of(const PairRange& first, const PairRange& second,
+                                               const PairRange& third, const Range& rate,
+                                               double slope) noexcept {
+  const Range square{rate.low * rate.low, rate.high * rate.high};
+  const Range cube{square.low * rate.low, square.high * rate.high};
+  const PairRange mixed = scaled(second, {3.0 * rate.low, 3.0 * rate.high});
+  return {mixed, sum(scaled(second, square), product(first, slope)),
+          sum(scaled(third, cube), product(mixed, slope))};
+}
+
+/// The γ that are left where 0 is not among them.
+class ForcedRange {
+ public:
+  /// Narrows to where -below <= f γ <= above for every f in [low, high].
+  void narrow(double low, double high, double below, double above) noexcept {
+    narrow(low, high, above);
+    narrow(-high, -low, below);
   }
-  [[nodiscard]] Range range() const noexcept {
-    if (!possible_) return {1.0, -1.0};
-    return {low_.maxCoeff(), high_.minCoeff()};
+  /// Brings γ into the range; false where that is empty, or not a number.
+  [[nodiscard]] bool take(double& curvature) const noexcept {
+    if (!(low_ <= high_)) return false;
+    curvature = std::clamp(curvature, low_, high_);
+    return true;
   }
 
  private:
-  /// For the joint that has to be pushed: 0 is not allowed.
-  void narrow(const Demand& demand, int lane) noexcept {
-    const double low = demand.factor.low[lane], high = demand.factor.high[lane];
-    narrow(low, high, demand.above[lane]);
-    narrow(-high, -low, demand.below[lane]);
-  }
   /// To where f γ <= most for every f in [low, high].
   void narrow(double low, double high, double most) noexcept {
     if (most >= 0.0) {
-      high_ = high_.min(most / std::max(high, kNothing));
-      low_ = low_.max(most / std::min(low, -kNothing));
+      high_ = std::min(high_, most / std::max(high, kNothing));
+      low_ = std::max(low_, most / std::min(low, -kNothing));
     } else if (low > 0.0) {
-      high_ = high_.min(most / low);
+      high_ = std::min(high_, most / low);
     } else if (high < 0.0) {
-      low_ = low_.max(most / high);
+      low_ = std::max(low_, most / high);
     } else {
-      possible_ = false;
+      low_ = std::numeric_limits<double>::infinity();
     }
   }
 
-  Array2d low_, high_;
-  bool possible_ = true;
+  double low_ = -std::numeric_limits<double>::infinity();
+  double high_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace
@@ -141,36 +150,68 @@ bool RateLimits::kept(const RateStretch& stretch) const noexcept VIAPOINT_NONBLO
     const PairRange jerk =
         sum(scaled(third, cube), sum(product(second, mixed), product(first, stretch.curvature)));
     is_kept *= is_within(acceleration, limits_[p].acceleration) * is_within(jerk, limits_[p].jerk);
-    is_kept += doubt_of(first) + doubt_of(second) + doubt_of(third);
+    is_kept += doubt_of(first, second, third);
   }
   return is_kept[0] == 1.0 && is_kept[1] == 1.0;
 }
 
-bool RateLimits::room(const RateStretch& stretch, double time,
-                      Range& curvature) const noexcept VIAPOINT_NONBLOCKING {
-  // q̈ = q''ρ² + q'(α + γt) and
-  // q⃛ = q'''ρ³ + 3q''ρ(α + γt) + q'γ are linear in γ; their worst is at the start or the end.
-  const Range& rate = stretch.rate;
-  const Range square{rate.low * rate.low, rate.high * rate.high};
-  const Range cube{square.low * rate.low, square.high * rate.high};
-  const Range thrice{3.0 * rate.low, 3.0 * rate.high};
+// q̈ = q''ρ² + q'(α + γt) and q⃛ = q'''ρ³ + 3q''ρ(α + γt) + q'γ are linear in γ, and in t: their
+// worst is at the start or the end.
+
+bool RateLimits::strongest(const RateStretch& stretch, double time,
+                           double& curvature) const noexcept VIAPOINT_NONBLOCKING {
   const double slope = stretch.slope.low;
-  Allowed allowed(curvature);
+  const bool is_positive = curvature >= 0.0;
+  if (std::isnan(doubt_of(stretch.rate) + 0.0 * slope + 0.0 * curvature)) return false;
+  Array2d most = Array2d::Constant(std::abs(curvature));
   for (std::size_t p = 0; p < pairs_; ++p) {
     const PairRange& first = stretch.path.first.pair[p];
     const PairRange& second = stretch.path.second.pair[p];
-    const PairRange gain = scaled(first, {time, time});
-    allowed.narrow(demand_of(gain, limits_[p].acceleration,
-                             sum(scaled(second, square), product(first, slope))));
-    const PairRange mixed = scaled(second, thrice);
-    Demand demand = demand_of(first, limits_[p].jerk,
-                              sum(scaled(stretch.path.third.pair[p], cube), product(mixed, slope)));
-    allowed.narrow(demand);
-    demand.factor = sum(first, scaled(mixed, {time, time}));
-    allowed.narrow(demand);
+    const PairRange& third = stretch.path.third.pair[p];
+    const Demand demand = demand_of(first, second, third, stretch.rate, slope);
+    Room acceleration = room_beside(demand.acceleration, limits_[p].acceleration);
+    acceleration.above += doubt_of(first, second, third);
+    if (is_none(acceleration)) return false;  // at the start, where no γ helps
+    const Room jerk = room_beside(demand.jerk, limits_[p].jerk);
+    if (is_none(jerk)) return forced(stretch, time, curvature);
+    // In the direction wished: what is left, over how fast γ uses it up.
+    const PairRange at_end = sum(first, scaled(demand.mixed, {time, time}));
+    const Array2d up = first.high.max(kNothing), down = (-first.low).max(kNothing);
+    const Array2d jerk_up = up.max(at_end.high), jerk_down = down.max(-at_end.low);
+    if (is_positive) {
+      most = most.min((acceleration.above / up).min(acceleration.below / down) / time);
+      most = most.min((jerk.above / jerk_up).min(jerk.below / jerk_down));
+    } else {
+      most = most.min((acceleration.above / down).min(acceleration.below / up) / time);
+      most = most.min((jerk.above / jerk_down).min(jerk.below / jerk_up));
+    }
   }
-  curvature = allowed.range();
-  return curvature.low <= curvature.high;
+  curvature = is_positive ? most.minCoeff() : -most.minCoeff();
+  return true;
+}
+
+/// The same where a joint has to be pushed.
+bool RateLimits::forced(const RateStretch& stretch, double time,
+                        double& curvature) const noexcept VIAPOINT_NONBLOCKING {
+  ForcedRange range;
+  for (std::size_t p = 0; p < pairs_; ++p) {
+    const PairRange& first = stretch.path.first.pair[p];
+    const PairRange& second = stretch.path.second.pair[p];
+    const PairRange& third = stretch.path.third.pair[p];
+    const Demand demand = demand_of(first, second, third, stretch.rate, stretch.slope.low);
+    Room acceleration = room_beside(demand.acceleration, limits_[p].acceleration);
+    acceleration.above += doubt_of(first, second, third);
+    if (is_none(acceleration)) return false;
+    const Room jerk = room_beside(demand.jerk, limits_[p].jerk);
+    const PairRange at_end = sum(first, scaled(demand.mixed, {time, time}));
+    for (int lane = 0; lane < 2; ++lane) {
+      range.narrow(time * first.low[lane], time * first.high[lane], acceleration.below[lane],
+                   acceleration.above[lane]);
+      range.narrow(first.low[lane], first.high[lane], jerk.below[lane], jerk.above[lane]);
+      range.narrow(at_end.low[lane], at_end.high[lane], jerk.below[lane], jerk.above[lane]);
+    }
+  }
+  return range.take(curvature);
 }
 
 }  // namespace viapoint

@@ -160,41 +160,82 @@ double worst_of_push(Problem& problem, double time, double curvature) {
   return worst;
 }
 
-TEST(RateLimits, AnyPushWithinTheRoomKeepsTheLimits) {
-  int found = 0;
+TEST(RateLimits, TheStrongestPushAndAnyWeakerOneKeepTheLimits) {
+  int found = 0, forced = 0;
   for (unsigned seed = 0; seed < kStretches; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     Problem problem(seed, 0.1);
     const double time = problem.uniform(0.002, 0.02);
-    Range room{-1e4, 1e4};
-    if (!RateLimits(problem.limits).room(problem.stretch, time, room)) continue;
+    const double wished = problem.uniform(-1e4, 1e4);
+    double strongest = wished;
+    if (!RateLimits(problem.limits).strongest(problem.stretch, time, strongest)) continue;
     ++found;
+    const bool is_forced = strongest * wished < 0.0 || std::abs(strongest) > std::abs(wished);
+    forced += is_forced ? 1 : 0;
+    double none = 0.0;
+    const bool may_rest =
+        RateLimits(problem.limits).strongest(problem.stretch, time, none) && none == 0.0;
     for (int s = 0; s < 50; ++s) {
-      const double push = problem.in(room.low, room.high);
+      const double push = may_rest ? problem.in(0.0, strongest) : strongest;
       ASSERT_LE(worst_of_push(problem, time, push), 1.0 + 2e-9) << "push " << push;
     }
   }
   EXPECT_GT(found, 200);
+  EXPECT_GT(forced, 10) << "where the joints leave no choice but to push";
 }
 
-TEST(RateLimits, OfSingleValuesTheRoomEndsWhereALimitIsReached) {
+TEST(RateLimits, OfSingleValuesTheStrongestPushReachesALimit) {
   int found = 0, forced = 0;
   for (unsigned seed = 0; seed < kStretches; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     Problem problem(seed, 0.0);
     const double time = problem.uniform(0.002, 0.02);
     constexpr double kMost = 1e4;
-    Range room{-kMost, kMost};
-    if (!RateLimits(problem.limits).room(problem.stretch, time, room)) continue;
+    double least = 0.0;
+    if (!RateLimits(problem.limits).strongest(problem.stretch, time, least)) continue;
     ++found;
-    if (room.low > 0.0 || room.high < 0.0) ++forced;
-    for (const double end : {room.low, room.high}) {
-      if (std::abs(end) == kMost) continue;
-      ASSERT_NEAR(worst_of_push(problem, time, end), 1.0, 1e-6);
+    if (least != 0.0) {
+      ++forced;
+      ASSERT_NEAR(worst_of_push(problem, time, least), 1.0, 1e-6);
+    }
+    for (const double wished : {kMost, -kMost}) {
+      double strongest = wished;
+      ASSERT_TRUE(RateLimits(problem.limits).strongest(problem.stretch, time, strongest));
+      if (strongest == wished) continue;
+      ASSERT_NEAR(worst_of_push(problem, time, strongest), 1.0, 1e-6);
     }
   }
   EXPECT_GT(found, 200);
   EXPECT_GT(forced, 50) << "where the joints leave no choice but to push";
+}
+
+TEST(RateLimits, AllowNoPushWhereAnythingIsNotFinite) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  int planted = 0;
+  for (unsigned seed = 0; planted < 1000; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    const Problem problem(seed, 0.1);
+    const RateLimits limits(problem.limits);
+    double push = 100.0;
+    if (!limits.strongest(problem.stretch, 0.01, push)) continue;
+    const auto plant = [&](auto&& where) {
+      RateStretch stretch = problem.stretch;
+      where(stretch) = kNan;
+      double poisoned = 100.0;
+      ASSERT_FALSE(limits.strongest(stretch, 0.01, poisoned));
+      ++planted;
+    };
+    for (int j = 0; j < problem.joints; ++j) {
+      const auto pair = static_cast<std::size_t>(j / 2);
+      plant([&](RateStretch& s) -> double& { return s.path.first.pair[pair].low[j % 2]; });
+      plant([&](RateStretch& s) -> double& { return s.path.second.pair[pair].high[j % 2]; });
+      plant([&](RateStretch& s) -> double& { return s.path.third.pair[pair].low[j % 2]; });
+    }
+    plant([](RateStretch& s) -> double& { return s.rate.high; });
+    plant([](RateStretch& s) -> double& { return s.slope.low; });
+    double nothing = kNan;
+    ASSERT_FALSE(limits.strongest(problem.stretch, 0.01, nothing));
+  }
 }
 
 TEST(RateLimits, LeaveAJointThatDoesNotMoveOutOfAccount) {
@@ -202,10 +243,11 @@ TEST(RateLimits, LeaveAJointThatDoesNotMoveOutOfAccount) {
   RateStretch stretch;
   stretch.path.first.set(1, {1.0, 1.0});
   stretch.rate = {0.5, 0.5};
-  Range room{-1e6, 1e6};
-  ASSERT_TRUE(limits.room(stretch, 0.01, room));
-  EXPECT_NEAR(room.high, 200.0, 1e-6);
-  EXPECT_NEAR(room.low, -200.0, 1e-6);
+  for (const double wished : {1e6, -1e6}) {
+    double push = wished;
+    ASSERT_TRUE(limits.strongest(stretch, 0.01, push));
+    EXPECT_NEAR(push, std::copysign(200.0, wished), 1e-6);
+  }
 }
 
 }  // namespace

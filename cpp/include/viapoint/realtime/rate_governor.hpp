@@ -19,6 +19,7 @@
 /// with a proof in place of a guess, and for the jerk.)
 #pragma once
 
+#include <algorithm>
 #include <array>
 
 #include "viapoint/core/joint_limits.hpp"
@@ -61,8 +62,9 @@ class RateGovernor {
   [[nodiscard]] RateState advance(const RateState& now) noexcept VIAPOINT_NONBLOCKING;
 
  private:
-  /// Steps a way back may have.
-  static constexpr int kSteps = 96;
+  /// Steps that a way back may have, and all the trials of a cycle together: what bounds the tick.
+  static constexpr int kSteps = 40;
+  static constexpr int kStepsACycle = 48;
   struct Step {
     double curvature = 0.0;
     int cycles = 0;
@@ -74,23 +76,33 @@ class RateGovernor {
     int position = 0;       ///< step under way
     double end_rate = 1.0;  ///< rate where the slope is back at 0
   };
+  /// What came of the search for a way back.
+  enum class Outcome {
+    kProven,
+    kTooFar,  ///< the limits are kept, but the rate leaves [0, 1]
+    kNone,
+  };
 
   void improve(const RateState& now, double target,
                const Lookahead& lookahead) noexcept VIAPOINT_NONBLOCKING;
-  [[nodiscard]] bool prove(RateState state, double push, const Lookahead& lookahead,
-                           Plan& plan) const noexcept VIAPOINT_NONBLOCKING;
+  [[nodiscard]] bool strongest_push(const RateState& now, double wanted, const Lookahead& lookahead,
+                                    double& push) const noexcept VIAPOINT_NONBLOCKING;
+  [[nodiscard]] Outcome prove(RateState state, double push, const Lookahead& lookahead, Plan& plan,
+                              int& budget) const noexcept VIAPOINT_NONBLOCKING;
   [[nodiscard]] bool step_back(RateState& state, const Lookahead& lookahead,
                                Plan& plan) const noexcept VIAPOINT_NONBLOCKING;
-  [[nodiscard]] bool try_step(RateState& state, double gamma, double furthest, RateStretch& stretch,
-                              Plan& plan) const noexcept VIAPOINT_NONBLOCKING;
-  [[nodiscard]] int cycles_back(double slope, double gamma) const noexcept VIAPOINT_NONBLOCKING;
+  [[nodiscard]] int longest_step(int step) const noexcept {
+    return stride_ << std::min(2, step / 8);
+  }
 
   RateLimits limits_;
   double cycle_;
-  int stride_;        ///< cycles in a step of the way back
+  int stride_;        ///< cycles in the first steps of the way back
   double max_slope_;  ///< |α| where the joints would allow more [1/s]
   double max_curvature_;
   double wanted_ = 1.0;
+  double gain_ = 0.0;   ///< by how much the last cycle's push has brought the end rate nearer
+  double share_ = 1.0;  ///< of the strongest push, to begin with
   Plan plan_;
   Plan trial_;
 };

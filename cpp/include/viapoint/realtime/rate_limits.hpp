@@ -30,14 +30,18 @@ class RateLimits {
 
   /// True where every limit is kept, for certain, anywhere in the stretch.
   [[nodiscard]] bool kept(const RateStretch& stretch) const noexcept VIAPOINT_NONBLOCKING;
-  /// Narrows γ to what may keep every limit for `time` [s] from a start with the slope
-  /// stretch.slope.low: those of the jerk all the while, that of the acceleration at the end, which
-  /// at the start no γ changes. kept() has the last word. stretch.rate has to hold the rates of
-  /// that time. False where there is none.
-  [[nodiscard]] bool room(const RateStretch& stretch, double time,
-                          Range& curvature) const noexcept VIAPOINT_NONBLOCKING;
+  /// Brings the wished γ to the nearest one under which every limit is kept, for certain, for
+  /// `time` [s] from a start with the slope stretch.slope.low, and then for less time, too. Without
+  /// a joint that has to be pushed (for which γ = 0 would be too much) that is so for every γ
+  /// between 0 and this one. stretch.path and stretch.rate have to hold all that the motion meets
+  /// in that time; stretch.curvature does not count. False where there is none.
+  [[nodiscard]] bool strongest(const RateStretch& stretch, double time,
+                               double& curvature) const noexcept VIAPOINT_NONBLOCKING;
 
  private:
+  [[nodiscard]] bool forced(const RateStretch& stretch, double time,
+                            double& curvature) const noexcept VIAPOINT_NONBLOCKING;
+
   struct PairLimits {
     Eigen::Array2d acceleration, jerk;
   };
