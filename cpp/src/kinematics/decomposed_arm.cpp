@@ -156,8 +156,8 @@ bool Decomposition::finds_joints_again() const {
   return true;
 }
 
-void Decomposition::solve(const Pose& motion, const JointVector& held,
-                          ClosedSolutions& solutions) const {
+void Decomposition::solve(const Pose& motion, const JointVector& held, ClosedSolutions& solutions,
+                          const JointSieve& sieve, double before) const {
   const auto n = static_cast<int>(joints_.size());
   const auto turning = orientation_->joints();
   const int placing = n - turning;
@@ -177,6 +177,11 @@ void Decomposition::solve(const Pose& motion, const JointVector& held,
   if (places.count == 0) solutions.out_of_reach = places.missing;
   for (int i = 0; i < places.count; ++i) {
     const PositionRoot& place = places.roots[static_cast<size_t>(i)];
+    double squares = before;
+    for (int step = 0; step < placing; ++step) {
+      squares += sieve.square(joint_of(step), way * place.q[static_cast<size_t>(step)]);
+    }
+    if (!sieve.passes(squares)) continue;
     Eigen::Matrix3d rest = task.linear();
     for (int step = 0; step < placing; ++step) {
       const auto k = static_cast<size_t>(step);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "kinematics/closed_form.hpp"
+#include "kinematics/joint_sieve.hpp"
 #include "kinematics/orientation_problem.hpp"
 #include "kinematics/position_problem.hpp"
 
@@ -22,7 +23,10 @@ class Decomposition {
   [[nodiscard]] static std::optional<Decomposition> find(std::span<const Screw> joints,
                                                          const Eigen::Vector3d& tool);
   /// E1 … En = motion, the motion of the tool from where it is at q = 0.
-  void solve(const Pose& motion, const JointVector& held, ClosedSolutions& solutions) const;
+  /// @param sieve branches whose placing joints do not pass it are left out; so many squares of
+  /// other joints come to theirs: `before`
+  void solve(const Pose& motion, const JointVector& held, ClosedSolutions& solutions,
+             const JointSieve& sieve = {}, double before = 0.0) const;
   [[nodiscard]] std::string describe() const;
 
  private:

@@ -117,6 +117,7 @@ Descent::End Descent::run_as(const InverseTask& task, const JointVector& start,
   double before = 1e300;
   double caution = 1.0;  // more damping while the error grows: a goal out of reach bends the valley
   int idle = 0;
+  const Joint<Joints> first = q;
   for (int iteration = 0; iteration < options.iterations; ++iteration) {
     const Kinematics<Joints> now(chain_, q);
     Eigen::Matrix<double, Rows, 1> miss;
@@ -162,6 +163,7 @@ Descent::End Descent::run_as(const InverseTask& task, const JointVector& start,
     if (most > kMostStep) step *= kMostStep / most;
     q += step;
     if (options.bounded) q = q.cwiseMax(low).cwiseMin(high);
+    if ((q - first).template lpNorm<Eigen::Infinity>() > options.leash) break;
   }
   return {best, least_error};
 }

@@ -17,7 +17,8 @@ class Descent {
   struct Options {
     bool bounded = false;  ///< within the limits all the way
     int iterations = 60;
-    int patience = 12;  ///< steps without progress that end it
+    int patience = 12;     ///< steps without progress that end it
+    double leash = 1e300;  ///< a joint that comes so far from the start ends it [rad or m]
   };
   /// Where a descent ended.
   struct End {

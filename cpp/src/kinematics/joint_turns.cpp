@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "viapoint/core/units.hpp"
 
@@ -224,6 +225,21 @@ std::vector<JointVector> JointTurns::all(const JointVector& branch,
   std::vector<JointVector> out;
   each(branch, reference, [&](const JointVector& q) { out.push_back(q); });
   return out;
+}
+
+double JointTurns::least_change(int joint, double angle, double reference) const {
+  constexpr double kNever = std::numeric_limits<double>::infinity();
+  const auto k = static_cast<size_t>(joint);
+  const double turn = turn_[k];
+  double value = angle - turn * std::nearbyint((angle - reference) * per_turn_[k]);
+  if (value > highest_[k]) {
+    value -= turn;  // more turns would bring it farther from the reference still
+    if (turn == 0.0 || value < lowest_[k]) return kNever;
+  } else if (value < lowest_[k]) {
+    value += turn;
+    if (turn == 0.0 || value > highest_[k]) return kNever;
+  }
+  return std::abs(value - reference);
 }
 
 LimitExcess JointTurns::excess(const JointVector& branch) const {

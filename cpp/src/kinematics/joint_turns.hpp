@@ -49,6 +49,9 @@ class JointTurns {
   /// The turn nearest to `reference`, limits left aside.
   [[nodiscard]] JointVector unlimited(const JointVector& branch,
                                       const JointVector& reference) const;
+  /// A lower bound of the change of one joint from `reference` to a turn of `angle` within its
+  /// limits [rad or m]; infinite where there is none. Real-time: safe.
+  [[nodiscard]] double least_change(int joint, double angle, double reference) const;
   /// @pre no turn of `branch` keeps the limits
   [[nodiscard]] LimitExcess excess(const JointVector& branch) const;
 

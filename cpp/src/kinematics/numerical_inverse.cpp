@@ -153,8 +153,9 @@ JointVector NumericalInverse::near(const InverseTask& task, const JointVector& r
 }
 
 std::optional<JointVector> NumericalInverse::follow(const InverseTask& task,
-                                                    const JointVector& reference) const {
-  const Descent::End end = descent_.run(task, reference, {.bounded = true});
+                                                    const JointVector& reference,
+                                                    double leash) const {
+  const Descent::End end = descent_.run(task, reference, {.bounded = true, .leash = leash});
   if (!end.error.within(kPoseTolerance) || !limits_.contains(end.q)) return std::nullopt;
   return end.q;
 }

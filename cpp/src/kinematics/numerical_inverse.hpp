@@ -27,8 +27,10 @@ class NumericalInverse final : public LimitedInverse {
   [[nodiscard]] JointVector near_unlimited(const InverseTask& task,
                                            const JointVector& reference) const override;
   /// Where one descent from `reference`, within the limits all the way, arrives, if it does.
+  /// @param leash it may not bring a joint farther than this from the reference [rad or m]
   [[nodiscard]] std::optional<JointVector> follow(const InverseTask& task,
-                                                  const JointVector& reference) const;
+                                                  const JointVector& reference,
+                                                  double leash = 1e300) const;
   /// The first solution within the limits that the starts find, without a word where there is none.
   [[nodiscard]] std::optional<JointVector> find(const InverseTask& task,
                                                 const JointVector& reference) const;

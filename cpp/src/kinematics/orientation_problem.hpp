@@ -36,8 +36,18 @@ class OrientationProblem {
 
  private:
   OrientationProblem() = default;
+  /// As solve(), of three joints.
+  void solve_three(const Eigen::Matrix3d& rotation, std::span<const double> held,
+                   OrientationRoots& found) const;
+
   int joints_ = 0;
   std::array<Screw, 3> joint_;
+  // Of three joints, at q = 0:
+  double between_ = 0.0;                               ///< cosine of axis 2 to axis 3
+  Eigen::Vector3d tilt_ = Eigen::Vector3d::Zero();     ///< of axis 3, the part across axis 2
+  Eigen::Vector3d tilt_on_ = Eigen::Vector3d::Zero();  ///< that, turned on by π/2 about axis 2
+  Eigen::Vector3d mark_ = Eigen::Vector3d::Zero();     ///< square to axis 3
+  Eigen::Vector3d mark_on_ = Eigen::Vector3d::Zero();  ///< that, turned on by π/2 about axis 3
 };
 
 }  // namespace viapoint

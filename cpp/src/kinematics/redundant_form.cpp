@@ -30,8 +30,7 @@ Eigen::Matrix3d frame_of(const Eigen::Vector3d& along, const Eigen::Vector3d& no
 }
 
 /// The sides of the branch that is q.
-template <typename Form>
-ArmSides sides_by_solving(const Form& form, const Pose& pose, const JointVector& q) {
+ArmSides sides_by_solving(const RedundantForm& form, const Pose& pose, const JointVector& q) {
   ClosedSolutions found;
   form.solve(pose, form.parameter_of(q), q, found);
   ArmSides sides;
@@ -64,8 +63,9 @@ std::optional<ArmAngleForm> ArmAngleForm::recognise(const ForwardKinematics& for
   arm.shoulder_ = *shoulder;
   arm.wrist_ = *wrist;
   // The elbow has to change the distance from shoulder to wrist, and its axis to tell the plane.
-  const Track bend = Track::of(joints[3], *wrist);
-  if (JointTerm::square(bend, *shoulder).weight() < 1e-6) return std::nullopt;
+  arm.bend_ = Track::of(joints[3], *wrist);
+  arm.square_ = JointTerm::square(arm.bend_, *shoulder);
+  if (arm.square_.weight() < 1e-6) return std::nullopt;
   if (std::abs(joints[3].axis.dot(*wrist - *shoulder)) > kExactAxes) return std::nullopt;
   arm.tool_inverse_ = forward.pose(JointVector::Zero(7)).inverse(Eigen::Isometry);
   return arm;
@@ -95,15 +95,13 @@ double ArmAngleForm::parameter_of(const JointVector& q) const {
 }
 
 void ArmAngleForm::solve(const Pose& pose_base_tool, double parameter, const JointVector& held,
-                         ClosedSolutions& solutions) const {
+                         ClosedSolutions& solutions, const JointSieve& sieve) const {
   const Pose motion = pose_base_tool * tool_inverse_;
   const Eigen::Vector3d along = motion * wrist_ - shoulder_;
-  const Track bend = Track::of(joints_[3], wrist_);
   const double distance = along.norm();
-  const JointTerm square = JointTerm::square(bend, shoulder_);
-  const Roots elbows = square.solve(distance * distance, 2.0 * kBoundary * distance, 0.0);
+  const Roots elbows = square_.solve(distance * distance, 2.0 * kBoundary * distance, 0.0);
   if (elbows.count == 0) {
-    const bool far = distance * distance > square.constant;
+    const bool far = distance * distance > square_.constant;
     const double reached = distance * distance + (far ? -elbows.missing : elbows.missing);
     solutions.out_of_reach = std::abs(distance - std::sqrt(std::max(0.0, reached)));
     return;
@@ -115,18 +113,36 @@ void ArmAngleForm::solve(const Pose& pose_base_tool, double parameter, const Joi
   const std::span<const double> all(held.data(), 7);
   for (int e = 0; e < elbows.count; ++e) {
     const double q4 = elbows.q[static_cast<size_t>(e)];
+    const double bent = sieve.square(3, q4);
+    if (!sieve.passes(bent)) continue;
     const Eigen::Matrix3d shoulder =
-        target * frame_of(bend.at(q4) - shoulder_, joints_[3].axis).transpose();
+        target * frame_of(bend_.at(q4) - shoulder_, joints_[3].axis).transpose();
     OrientationRoots uppers;
     upper_->solve(shoulder, all.first(3), uppers);
+    std::array<double, 2> squares{};
+    bool any = false;
+    for (int u = 0; u < uppers.count; ++u) {
+      const auto k = static_cast<size_t>(u);
+      squares[k] = bent + sieve.squares(0, uppers.roots[k].q);
+      any = any || sieve.passes(squares[k]);
+    }
+    if (!any) continue;
     OrientationRoots lowers;
     lower_->solve(joints_[3].rotation(-q4) * shoulder.transpose() * motion.linear(), all.last(3),
                   lowers);
+    std::array<double, 2> turned{};  // where the wrist is free its joints may be shared out
+    for (int l = 0; l < lowers.count; ++l) {
+      const OrientationRoot& lower = lowers.roots[static_cast<size_t>(l)];
+      if (!lower.free) turned[static_cast<size_t>(l)] = sieve.squares(4, lower.q);
+    }
     for (int u = 0; u < uppers.count; ++u) {
+      if (!sieve.passes(squares[static_cast<size_t>(u)])) continue;
       const OrientationRoot& upper = uppers.roots[static_cast<size_t>(u)];
       solutions.held = solutions.held || upper.free;
       for (int l = 0; l < lowers.count; ++l) {
         const OrientationRoot& lower = lowers.roots[static_cast<size_t>(l)];
+        const double whole = squares[static_cast<size_t>(u)] + turned[static_cast<size_t>(l)];
+        if (!sieve.passes(whole)) continue;
         ClosedBranch& branch = solutions.branches.add();
         branch.q.resize(7);
         branch.q << upper.q[0], upper.q[1], upper.q[2], q4, lower.q[0], lower.q[1], lower.q[2];
@@ -172,9 +188,11 @@ std::string LastJointForm::family() const {
 }
 
 void LastJointForm::solve(const Pose& pose_base_tool, double parameter, const JointVector& held,
-                          ClosedSolutions& solutions) const {
+                          ClosedSolutions& solutions, const JointSieve& sieve) const {
+  const double turned = sieve.square(6, parameter);
+  if (!sieve.passes(turned)) return;
   const Pose motion = pose_base_tool * tool_inverse_ * last_.motion(-parameter);
-  decomposition_.solve(motion, held, solutions);
+  decomposition_.solve(motion, held, solutions, sieve, turned);
   for (ClosedBranch& branch : solutions.branches) {
     branch.q.conservativeResize(7);
     branch.q[6] = parameter;

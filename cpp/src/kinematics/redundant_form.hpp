@@ -18,9 +18,10 @@ class RedundantForm {
   /// What the parameter is, in words.
   [[nodiscard]] virtual std::string parameter() const = 0;
   [[nodiscard]] virtual double parameter_of(const JointVector& q) const = 0;
-  /// Every branch with this value of the parameter [rad].
+  /// Every branch with this value of the parameter [rad], but for those that a part of their joints
+  /// shows not to pass the sieve.
   virtual void solve(const Pose& pose_base_tool, double parameter, const JointVector& held,
-                     ClosedSolutions& solutions) const = 0;
+                     ClosedSolutions& solutions, const JointSieve& sieve = {}) const = 0;
   [[nodiscard]] virtual ArmSides sides(const JointVector& q) const = 0;
   /// Between which values the parameter may lie [rad].
   [[nodiscard]] virtual std::pair<double, double> range(const JointLimits& limits) const = 0;
@@ -36,7 +37,7 @@ class ArmAngleForm final : public RedundantForm {
   [[nodiscard]] std::string parameter() const override { return "arm angle"; }
   [[nodiscard]] double parameter_of(const JointVector& q) const override;
   void solve(const Pose& pose_base_tool, double parameter, const JointVector& held,
-             ClosedSolutions& solutions) const override;
+             ClosedSolutions& solutions, const JointSieve& sieve) const override;
   [[nodiscard]] ArmSides sides(const JointVector& q) const override;
   [[nodiscard]] std::pair<double, double> range(const JointLimits& limits) const override;
 
@@ -48,6 +49,8 @@ class ArmAngleForm final : public RedundantForm {
   std::vector<Screw> joints_;
   Eigen::Vector3d shoulder_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d wrist_ = Eigen::Vector3d::Zero();  ///< at q = 0
+  Track bend_;                                       ///< of the wrist, about joint 4
+  JointTerm square_;                                 ///< of its distance from the shoulder
   std::optional<OrientationProblem> upper_;          ///< joints 1, 2, 3
   std::optional<OrientationProblem> lower_;          ///< joints 5, 6, 7
   Pose tool_inverse_ = Pose::Identity();
@@ -62,7 +65,7 @@ class LastJointForm final : public RedundantForm {
   [[nodiscard]] std::string parameter() const override { return "joint 7"; }
   [[nodiscard]] double parameter_of(const JointVector& q) const override { return q[6]; }
   void solve(const Pose& pose_base_tool, double parameter, const JointVector& held,
-             ClosedSolutions& solutions) const override;
+             ClosedSolutions& solutions, const JointSieve& sieve) const override;
   [[nodiscard]] ArmSides sides(const JointVector& q) const override;
   [[nodiscard]] std::pair<double, double> range(const JointLimits& limits) const override;
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "viapoint/core/scalar_minimum.hpp"
+#include "viapoint/core/units.hpp"
 
 namespace viapoint {
 namespace {
@@ -13,11 +14,13 @@ namespace {
 constexpr double kNone = 1e300;
 constexpr double kNearEnough = 0.35;  ///< a change of every joint below this is near [rad]
 /// Parameters looked at, first few, then more where these found nothing.
-constexpr std::array kScans{16, 48};
+constexpr std::array kScans{14, 48};
 constexpr int kScan = 64;        ///< where the whole range counts
 constexpr int kSweep = 96;       ///< where every configuration is wanted
 constexpr int kFineScan = 1024;  ///< before a pose is given up
-constexpr int kRefinements = 8;
+constexpr int kRefinements = 5;
+/// What costs so much more than the best [rad²] does not guide its refinement.
+constexpr double kDearer = 0.5;
 constexpr double kResolution = 1e-4;  ///< of the stretch refined
 constexpr int kHalvings = 40;
 /// Within this share of its range from a limit a joint is crowded, and at the limit that counts as
@@ -87,19 +90,18 @@ double RedundantInverse::crowding(const JointVector& q) const {
 }
 
 RedundantInverse::Choice RedundantInverse::choose(const InverseTask& task, double parameter,
-                                                  const JointVector& reference,
-                                                  const Cost& cost) const {
+                                                  const JointVector& reference, double most) const {
   Choice best;
   best.parameter = parameter;
   ClosedSolutions found;
-  form_->solve(task.goal, parameter, reference, found);
+  form_->solve(task.goal, parameter, reference, found, JointSieve(turns_, reference, most));
   for (const ClosedBranch& branch : found.branches) {
     each_share(branch, reference, [&](const JointVector& candidate) {
-      const auto q = turns_.nearest(candidate, reference);
-      if (!q) return;
-      const double price = cost(*q);
-      if (price >= best.cost || !confirmed(task, *q)) return;
-      best.q = *q;
+      JointVector q = candidate;
+      if (!turns_.bring_near(q, reference, nullptr)) return;
+      const double price = cost(q, reference);
+      if (price >= std::min(best.cost, most) || !confirmed(task, q)) return;
+      best.q = q;
       best.cost = price;
     });
   }
@@ -107,14 +109,14 @@ RedundantInverse::Choice RedundantInverse::choose(const InverseTask& task, doubl
 }
 
 RedundantInverse::Choice RedundantInverse::refine(const InverseTask& task, Choice best, double half,
-                                                  const JointVector& reference,
-                                                  const Cost& cost) const {
+                                                  const JointVector& reference) const {
   // A parameter without a solution counts as infinitely dear.
   const auto [least, most] = form_->range(limits_);
   const double low = std::max(best.parameter - half, least);
   const double high = std::min(best.parameter + half, most);
+  const double too_dear = best.cost + kDearer;
   const auto look = [&](double parameter) {
-    const Choice found = choose(task, parameter, reference, cost);
+    const Choice found = choose(task, parameter, reference, too_dear);
     if (found.cost < best.cost) best = found;
     return found.cost < kNone ? found.cost : std::numeric_limits<double>::infinity();
   };
@@ -124,42 +126,46 @@ RedundantInverse::Choice RedundantInverse::refine(const InverseTask& task, Choic
 }
 
 RedundantInverse::Choice RedundantInverse::scan(const InverseTask& task, int count,
-                                                const JointVector& reference,
-                                                const Cost& cost) const {
+                                                const JointVector& reference) const {
   const auto [low, high] = form_->range(limits_);
   const double step = (high - low) / count;
+  // From where the reference is outwards: the sooner a cheap one is found, the more of the others
+  // need not be solved.
+  const double from = step > 0.0 ? (form_->parameter_of(reference) - low) / step : 0.0;
+  const double middle = std::clamp(from, 0.0, 1.0 * count);
+  const int last = high - low < 2.0 * kPi ? count : count - 1;  // of a whole turn both ends are one
+  int below = static_cast<int>(middle);
+  int above = below + 1;
   Choice best;
-  for (int i = 0; i <= count; ++i) {
-    Choice found = choose(task, low + step * i, reference, cost);
+  while (below >= 0 || above <= last) {
+    const bool down = above > last || (below >= 0 && middle - below < above - middle);
+    Choice found = choose(task, low + step * (down ? below-- : above++), reference, best.cost);
     if (found.cost < best.cost) best = std::move(found);
   }
-  return best.cost < kNone ? refine(task, best, step, reference, cost) : best;
+  return best.cost < kNone ? refine(task, best, step, reference) : best;
 }
 
 JointVector RedundantInverse::near(const InverseTask& task, const JointVector& reference) const {
   if (task.position_only) return numerical_.near(task, reference);
   // Near the reference the least motion is what least squares take from there; the parameter alone
   // is no guide where it hardly moves a joint, or moves some without end (shoulder in line).
-  const auto followed = numerical_.follow(task, reference);
+  const auto followed = numerical_.follow(task, reference, 2.0 * kNearEnough);
   if (followed && (*followed - reference).lpNorm<Eigen::Infinity>() < kNearEnough) {
     return *followed;
   }
-  const Cost far = [&](const JointVector& q) {
-    return (q - reference).squaredNorm() + crowding(q);
-  };
   Choice best;
   if (followed) {
     best.q = *followed;
-    best.cost = far(best.q);
+    best.cost = cost(best.q, reference);
   }
   for (const int count : kScans) {
-    const Choice found = scan(task, count, reference, far);
+    const Choice found = scan(task, count, reference);
     if (found.cost < best.cost) best = found;
     if (best.cost < kNone) return best.q;
   }
   // Narrow stretches between those parameters: descents find them sooner than a finer scan.
   if (const auto found = numerical_.find(task, reference)) return *found;
-  best = scan(task, kFineScan, reference, far);
+  best = scan(task, kFineScan, reference);
   if (best.cost < kNone) return best.q;
   const double missing = least_missing(task, reference);
   if (missing > kPoseTolerance) refuse_unreachable("the wrist at this pose", missing);

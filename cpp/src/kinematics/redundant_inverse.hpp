@@ -1,7 +1,6 @@
 /// @file
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -37,18 +36,21 @@ class RedundantInverse final : public FormInverse<RedundantForm> {
     double parameter = 0.0;
     double cost = 1e300;  ///< 1e300: nothing within the limits
   };
-  using Cost = std::function<double(const JointVector&)>;
   [[nodiscard]] BranchStatus branches_near(const InverseTask& task, const JointVector& near,
                                            BranchSet& branches) const noexcept override;
-  /// The cheapest solution within the limits with this parameter.
+  /// The cheapest solution within the limits with this parameter, of those that cost less than
+  /// `most`.
   [[nodiscard]] Choice choose(const InverseTask& task, double parameter,
-                              const JointVector& reference, const Cost& cost) const;
+                              const JointVector& reference, double most) const;
   /// The cheapest found between parameter ± half, from `best` on.
   [[nodiscard]] Choice refine(const InverseTask& task, Choice best, double half,
-                              const JointVector& reference, const Cost& cost) const;
+                              const JointVector& reference) const;
   /// The cheapest of `count` parameters over the whole range, refined.
-  [[nodiscard]] Choice scan(const InverseTask& task, int count, const JointVector& reference,
-                            const Cost& cost) const;
+  [[nodiscard]] Choice scan(const InverseTask& task, int count, const JointVector& reference) const;
+  /// The squares of all changes from the reference, and what limits add.
+  [[nodiscard]] double cost(const JointVector& q, const JointVector& reference) const {
+    return (q - reference).squaredNorm() + crowding(q);
+  }
   /// How far the wrist is out of reach at the best parameter [m].
   [[nodiscard]] double least_missing(const InverseTask& task, const JointVector& reference) const;
   /// What limits add to a cost: nothing but close to them.

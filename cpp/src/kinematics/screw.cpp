@@ -6,6 +6,15 @@
 #include "viapoint/core/units.hpp"
 
 namespace viapoint {
+namespace {
+
+/// @param angle less than 3π from zero @return it by a whole turn to within π [rad]
+double within_a_turn(double angle) {
+  if (std::abs(angle) <= kPi) return angle;
+  return angle - std::copysign(2.0 * kPi, angle);
+}
+
+}  // namespace
 
 Eigen::Matrix3d Screw::rotation(double q) const {
   if (type == JointType::kPrismatic) return Eigen::Matrix3d::Identity();
@@ -91,7 +100,7 @@ Roots JointTerm::solve(double value, double slack, double least) const {
     return roots;
   }
   if (type == JointType::kRevolute) {
-    const double size = std::hypot(first, second);
+    const double size = std::sqrt(first * first + second * second);
     const double beyond = std::abs(rest) - size;
     if (beyond > slack) {
       roots.missing = beyond;
@@ -101,8 +110,7 @@ Roots JointTerm::solve(double value, double slack, double least) const {
     const double sine = std::sqrt(std::max(0.0, size - rest) * std::max(0.0, size + rest));
     const double delta = std::atan2(sine, rest);
     const double middle = std::atan2(second, first);
-    roots.q = {std::remainder(middle + delta, 2.0 * kPi),
-               std::remainder(middle - delta, 2.0 * kPi)};
+    roots.q = {within_a_turn(middle + delta), within_a_turn(middle - delta)};
     roots.apart = std::min(delta, kPi - delta);
     roots.count = roots.apart == 0.0 ? 1 : 2;
     return roots;
