@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "path/deviation.hpp"
+#include "viapoint/core/units.hpp"
+
 namespace viapoint {
 namespace {
 
@@ -17,6 +20,25 @@ constexpr double kLargestCorrection = 0.7;
 /// Singular directions below this share of the largest are left alone (least norm).
 constexpr double kRankThreshold = 1e-10;
 constexpr int kDampedSteps = 60;
+/// Position and the direction of an axis.
+constexpr int kAxisCoordinates = 5;
+
+int coordinates_of(Hold hold) {
+  if (hold == Hold::kPose) return 6;
+  return hold == Hold::kAxis ? kAxisCoordinates : 3;
+}
+
+/// The rotation vector that brings one direction to the other by the least turn; of opposite ones,
+/// about any axis across.
+Eigen::Vector3d least_turn(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+  const Eigen::Vector3d across = from.cross(to);
+  const double sine = across.norm();
+  if (sine == 0.0) {
+    if (from.dot(to) > 0.0) return Eigen::Vector3d::Zero();
+    return kPi * from.unitOrthogonal();
+  }
+  return angle_between(from, to) / sine * across;
+}
 
 }  // namespace
 
@@ -26,7 +48,7 @@ CurveFollower::CurveFollower(const ForwardKinematics& arm, const TaskCurve& curv
       curve_(curve),
       start_(start),
       options_(options),
-      coordinates_(options.hold == Hold::kPose ? 6 : 3),
+      coordinates_(coordinates_of(options.hold)),
       free_joints_(options.hold == Hold::kWrist ? std::min(3, arm.joints()) : arm.joints()),
       reach_(1.0),
       wrist_rate_(JointVector::Zero(arm.joints())) {
@@ -43,19 +65,41 @@ Twist CurveFollower::miss(double s, const Pose& pose) const {
   miss.head<3>() = wanted.p - pose.translation();
   if (coordinates_ == 6) {
     miss.tail<3>() = rotation_log(wanted.rotation * pose.linear().transpose());
+  } else if (coordinates_ == kAxisCoordinates) {
+    miss.tail<3>() = least_turn(pose.linear().col(2), wanted.rotation.col(2));
   }
   return miss;
 }
 
-CurveFollower::Rows CurveFollower::scaled(const Twist& twist) const {
+CurveFollower::Rows CurveFollower::held(const Eigen::Matrix3d& turned, const Twist& twist) const {
   Rows rows = twist.head(coordinates_);
   rows.head<3>() /= reach_;
+  if (coordinates_ == kAxisCoordinates) {
+    rows.tail<2>() = turned.leftCols<2>().transpose() * twist.tail<3>();
+  }
   return rows;
 }
 
-CurveFollower::Block CurveFollower::scaled(const Jacobian& jacobian) const {
+CurveFollower::Block CurveFollower::held(const Eigen::Matrix3d& turned,
+                                         const Jacobian& jacobian) const {
   Block block = jacobian.topLeftCorner(coordinates_, free_joints_);
   block.topRows<3>() /= reach_;
+  if (coordinates_ == kAxisCoordinates) {
+    block.bottomRows<2>() =
+        turned.leftCols<2>().transpose() * jacobian.bottomRows<3>().leftCols(free_joints_);
+  }
+  return block;
+}
+
+CurveFollower::Block CurveFollower::held_rate(const CurvePoint& wanted, const Jacobian& jacobian,
+                                              const Jacobian& jacobian_rate) const {
+  Block block = held(wanted.rotation, jacobian_rate);
+  if (coordinates_ == kAxisCoordinates) {
+    Eigen::Matrix<double, 3, 2> axes_rate;
+    axes_rate << wanted.w.cross(wanted.rotation.col(0)), wanted.w.cross(wanted.rotation.col(1));
+    block.bottomRows<2>() +=
+        axes_rate.transpose() * jacobian.bottomRows<3>().leftCols(free_joints_);
+  }
   return block;
 }
 
@@ -64,24 +108,25 @@ void CurveFollower::place_wrist(double s, JointVector& q) const {
 }
 
 std::optional<CurveFollower::Knot> CurveFollower::solve(double s, const JointVector& guess) const {
+  const Eigen::Matrix3d turned = curve_.at(s).rotation;
   JointVector q = guess;
   place_wrist(s, q);
   const JointVector from = q;
   ChainFrames frames = arm_.frames(q);
   Twist error = miss(s, frames.pose_base_tool);
-  double size = scaled(error).norm();
+  double size = held(turned, error).norm();
   for (int step = 0; step < kNewtonSteps && size > kConverged; ++step) {
     Eigen::CompleteOrthogonalDecomposition<Block> solver;
     solver.setThreshold(kRankThreshold);
-    solver.compute(scaled(arm_.jacobian(frames)));
+    solver.compute(held(turned, arm_.jacobian(frames)));
     JointVector trial = q;
-    trial.head(free_joints_) += solver.solve(scaled(error));
+    trial.head(free_joints_) += solver.solve(held(turned, error));
     if (!trial.allFinite() || (trial - from).lpNorm<Eigen::Infinity>() > kLargestCorrection) {
       return std::nullopt;
     }
     const ChainFrames trial_frames = arm_.frames(trial);
     const Twist trial_error = miss(s, trial_frames.pose_base_tool);
-    const double trial_size = scaled(trial_error).norm();
+    const double trial_size = held(turned, trial_error).norm();
     // Near a solution a step that no longer gains is rounding; far from one it is divergence, and
     // the test of the residual below tells.
     if (step > 2 && trial_size >= size) break;
@@ -102,7 +147,7 @@ CurveFollower::Knot CurveFollower::derivatives(double s, const JointVector& q) c
   const ChainFrames frames = arm_.frames(q);
   const CurvePoint wanted = curve_.at(s);
   const Jacobian jacobian = arm_.jacobian(frames);
-  const Block block = scaled(jacobian);
+  const Block block = held(wanted.rotation, jacobian);
   Eigen::CompleteOrthogonalDecomposition<Block> solver;
   solver.setThreshold(kRankThreshold);
   solver.compute(block);
@@ -114,8 +159,8 @@ CurveFollower::Knot CurveFollower::derivatives(double s, const JointVector& q) c
   knot.point.q1 = wrist_rate_;
   Twist rate;
   rate << wanted.p1, wanted.w;
-  const Rows wanted_rate = scaled(rate);
-  const Rows by_free = scaled(Twist(rate - jacobian * wrist_rate_));
+  const Rows wanted_rate = held(wanted.rotation, rate);
+  const Rows by_free = held(wanted.rotation, Twist(rate - jacobian * wrist_rate_));
   knot.point.q1.head(free_joints_) = solver.solve(by_free);
   const double rate_size = wanted_rate.norm();
   const Rows rate_miss = block * knot.point.q1.head(free_joints_) - by_free;
@@ -125,8 +170,13 @@ CurveFollower::Knot CurveFollower::derivatives(double s, const JointVector& q) c
   Twist rate_change;
   rate_change << wanted.p2, wanted.w1;
   rate_change -= jacobian_rate * knot.point.q1;
+  if (coordinates_ == kAxisCoordinates) {
+    // From (Eᵀ(ω − ω_c))' = 0, where ω is the tool's rate and ω_c the curve's.
+    const Eigen::Vector3d tool_rate = (jacobian * knot.point.q1).tail<3>();
+    rate_change.tail<3>() -= tool_rate.cross(wanted.w);
+  }
   knot.point.q2 = JointVector::Zero(arm_.joints());
-  knot.point.q2.head(free_joints_) = solver.solve(scaled(rate_change));
+  knot.point.q2.head(free_joints_) = solver.solve(held(wanted.rotation, rate_change));
   if (free_joints_ > coordinates_) {
     // The derivative of least norm lacks what turns the row space of J: (I − J⁺J) J'ᵀλ.
     const BlockTransposed transposed = block.transpose();
@@ -135,7 +185,7 @@ CurveFollower::Knot CurveFollower::derivatives(double s, const JointVector& q) c
     dual.compute(transposed);
     const JointVector q1_free = knot.point.q1.head(free_joints_);
     const Rows lambda = dual.solve(q1_free);
-    const JointVector turn = scaled(jacobian_rate).transpose() * lambda;
+    const JointVector turn = held_rate(wanted, jacobian, jacobian_rate).transpose() * lambda;
     const Rows seen = block * turn;
     knot.point.q2.head(free_joints_) += turn - solver.solve(seen);
   }
@@ -145,19 +195,20 @@ CurveFollower::Knot CurveFollower::derivatives(double s, const JointVector& q) c
 
 Twist CurveFollower::nearest_miss(double s, JointVector guess) const {
   place_wrist(s, guess);
+  const Eigen::Matrix3d turned = curve_.at(s).rotation;
   double damping = 1e-3;
   ChainFrames frames = arm_.frames(guess);
   Twist error = miss(s, frames.pose_base_tool);
-  for (int step = 0; step < kDampedSteps && scaled(error).norm() > 1e-12; ++step) {
-    const Block block = scaled(arm_.jacobian(frames));
+  for (int step = 0; step < kDampedSteps && held(turned, error).norm() > 1e-12; ++step) {
+    const Block block = held(turned, arm_.jacobian(frames));
     JointMatrix normal = block.transpose() * block;
     normal.diagonal().array() += damping;
-    const JointVector right = block.transpose() * scaled(error);
+    const JointVector right = block.transpose() * held(turned, error);
     JointVector trial = guess;
     trial.head(free_joints_) += normal.ldlt().solve(right);
     const ChainFrames trial_frames = arm_.frames(trial);
     const Twist trial_error = miss(s, trial_frames.pose_base_tool);
-    if (scaled(trial_error).norm() < scaled(error).norm()) {
+    if (held(turned, trial_error).norm() < held(turned, error).norm()) {
       guess = trial;
       frames = trial_frames;
       error = trial_error;
@@ -171,18 +222,22 @@ Twist CurveFollower::nearest_miss(double s, JointVector guess) const {
 }
 
 Eigen::VectorXd CurveFollower::singular_values(const JointVector& q) const {
-  const Eigen::MatrixXd block = scaled(arm_.jacobian(arm_.frames(q)));
+  const ChainFrames frames = arm_.frames(q);
+  const Eigen::MatrixXd block = held(frames.pose_base_tool.linear(), arm_.jacobian(frames));
   return Eigen::JacobiSVD<Eigen::MatrixXd>(block).singularValues();
 }
 
 std::array<bool, 6> CurveFollower::holds(const JointVector& q) const {
   // A coordinate is free when its unit vector lies in what the joints can make of rates.
   constexpr double kIndependent = 1e-6;
-  const Eigen::MatrixXd block = scaled(arm_.jacobian(arm_.frames(q)));
+  // In the base frame, also where an axis is held: these coordinates have names.
+  const int coordinates = coordinates_ == kAxisCoordinates ? 6 : coordinates_;
+  Eigen::MatrixXd block = arm_.jacobian(arm_.frames(q)).topLeftCorner(coordinates, free_joints_);
+  block.topRows<3>() /= reach_;
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(block, Eigen::ComputeThinU);
   const Eigen::VectorXd& values = svd.singularValues();
   std::array<bool, 6> which{};
-  for (Eigen::Index i = 0; i < coordinates_; ++i) {
+  for (Eigen::Index i = 0; i < coordinates; ++i) {
     double within = 0.0;
     for (Eigen::Index k = 0; k < values.size(); ++k) {
       if (values[k] > kIndependent * values[0]) {

@@ -12,6 +12,8 @@ namespace viapoint {
 
 /// Solves, for the coordinates that are held (x = tool position, and rotation for Hold::kPose),
 ///   J q' = x',   J q'' = x'' − J' q'.
+/// For Hold::kAxis the two angular rates across the tool's z axis count, Eᵀω with E the x and y
+/// axes of the curve's frame; these turn with it, E' = ω_c × E.
 /// With more joints than coordinates the least-norm rate is followed, q' = Jᵀλ, and its own exact
 /// derivative, q'' = Jᵀλ' + J'ᵀλ, is taken. With fewer, the least-squares solution, whose residual
 /// is kept. Rotation rows count in radians, position rows in shares of the arm's reach.
@@ -27,7 +29,7 @@ class CurveFollower {
   CurveFollower(const ForwardKinematics& arm, const TaskCurve& curve, const JointVector& start,
                 const InsertionOptions& options);
 
-  [[nodiscard]] int coordinates() const { return coordinates_; }  ///< 3 or 6
+  [[nodiscard]] int coordinates() const { return coordinates_; }  ///< 3, 5 or 6
   [[nodiscard]] int free_joints() const { return free_joints_; }  ///< those that follow the curve
 
   /// Newton's method from `guess`. Nothing when it does not come within a small part of the
@@ -37,7 +39,7 @@ class CurveFollower {
   [[nodiscard]] Knot derivatives(double s, const JointVector& q) const;
 
   /// Damped least squares (Levenberg 1944) from `guess`, however far: the nearest the joints come
-  /// to the curve at s. @return the misses of the held coordinates [m, then rad], (6,)
+  /// to the curve at s. @return the misses of what is held, in the base frame [m, then rad], (6,)
   [[nodiscard]] Twist nearest_miss(double s, JointVector guess) const;
   /// Singular values of the held rows, largest first.
   [[nodiscard]] Eigen::VectorXd singular_values(const JointVector& q) const;
@@ -54,8 +56,12 @@ class CurveFollower {
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 6, 1>;
 
   [[nodiscard]] Twist miss(double s, const Pose& pose) const;
-  [[nodiscard]] Rows scaled(const Twist& twist) const;
-  [[nodiscard]] Block scaled(const Jacobian& jacobian) const;
+  /// The rows that are held while the curve's frame is turned so.
+  [[nodiscard]] Rows held(const Eigen::Matrix3d& turned, const Twist& twist) const;
+  [[nodiscard]] Block held(const Eigen::Matrix3d& turned, const Jacobian& jacobian) const;
+  /// The derivative by s of the held rows of J.
+  [[nodiscard]] Block held_rate(const CurvePoint& wanted, const Jacobian& jacobian,
+                                const Jacobian& jacobian_rate) const;
   /// The joints that do not follow the curve, put where they belong at s.
   void place_wrist(double s, JointVector& q) const;
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "path/chain_bounds.hpp"
@@ -66,17 +65,37 @@ double angle_bound(const Eigen::Vector3d& phi, const CurvePoint& on_curve,
   return std::min(crude, refined);
 }
 
+/// Derivatives of an axis z that turns at w, by z' = w × z: exact to the second, and a bound of the
+/// third over |t| <= half from that of ‖w''‖ there,
+///   z''' = w'' × z + 2 w' × z' + w × z'',   ‖z'''‖ <= ‖w''‖ + 3 ‖w'‖ ‖w‖ + ‖w‖³.
+struct TurningAxis {
+  Eigen::Vector3d first, second;
+  double third;
+};
+
+TurningAxis turning(const Eigen::Vector3d& axis, const Eigen::Vector3d& w,
+                    const Eigen::Vector3d& w1, double sup_w2, double half) {
+  const double sup_w1 = w1.norm() + half * sup_w2;
+  const double sup_w = w.norm() + half * (w1.norm() + 0.5 * half * sup_w2);
+  const Eigen::Vector3d first = w.cross(axis);
+  return {first, w1.cross(axis) + w.cross(first),
+          sup_w2 + 3.0 * sup_w1 * sup_w + sup_w * sup_w * sup_w};
+}
+
+/// The angle between two unit vectors whose ends are `chord` apart.
+double angle_of_chord(double chord) { return 2.0 * std::asin(std::min(0.5 * chord, 1.0)); }
+
 /// Taylor expansion of the tool about the middle of stretches of one piece.
 class PieceDeviation {
  public:
   PieceDeviation(const ForwardKinematics& arm, const JointPiece& piece, const TaskCurve& curve,
-                 double s0, bool with_angle)
+                 double s0, AngleOf angle_of)
       : arm_(arm),
         piece_(piece),
         curve_(curve),
         s0_(s0),
         reach_(reach_over(arm, piece)),
-        with_angle_(with_angle) {}
+        angle_of_(angle_of) {}
 
   StretchDeviation over(const Stretch& stretch) const {
     const double half = stretch.half;
@@ -99,7 +118,17 @@ class PieceDeviation {
     result.bound.position =
         quadratic_bound(e, e1, e2, half) +
         half * half * half / 6.0 * (position_third_bound(arm_, reach_, sup) + bounds.p3);
-    if (with_angle_) {
+    if (angle_of_ == AngleOf::kAxis) {
+      const Eigen::Vector3d axis = frames.pose_base_tool.linear().col(2);
+      const Eigen::Vector3d wanted = on_curve.rotation.col(2);
+      const TurningAxis tool = turning(axis, rate.tail<3>(), rate_change.tail<3>(),
+                                       rotation_second_bound(arm_, sup), half);
+      const TurningAxis asked = turning(wanted, on_curve.w, on_curve.w1, bounds.w2, half);
+      result.at_middle.angle = angle_between(axis, wanted);
+      result.bound.angle = angle_of_chord(quadratic_bound(axis - wanted, tool.first - asked.first,
+                                                          tool.second - asked.second, half) +
+                                          half * half * half / 6.0 * (tool.third + asked.third));
+    } else if (angle_of_ == AngleOf::kRotation) {
       const Eigen::Vector3d phi =
           rotation_log(on_curve.rotation.transpose() * frames.pose_base_tool.linear());
       result.at_middle.angle = phi.norm();
@@ -117,7 +146,7 @@ class PieceDeviation {
   const TaskCurve& curve_;
   double s0_;
   JointVector reach_;
-  bool with_angle_;
+  AngleOf angle_of_;
 };
 
 /// Both halves of a stretch, the earlier on top.
@@ -129,10 +158,14 @@ void push_halves(std::vector<Stretch>& open, const Stretch& stretch) {
 
 }  // namespace
 
+double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
 Deviation bound_deviation(const ForwardKinematics& arm, const JointPiece& piece,
                           const TaskCurve& curve, double s0, double resolution_m,
                           double resolution_rad) {
-  const PieceDeviation local(arm, piece, curve, s0, true);
+  const PieceDeviation local(arm, piece, curve, s0, AngleOf::kRotation);
   Deviation seen;    // reached for certain
   Deviation proven;  // never left
   std::vector<Stretch> open = {{0.5 * piece.length, 0.5 * piece.length, 0}};
@@ -155,9 +188,9 @@ Deviation bound_deviation(const ForwardKinematics& arm, const JointPiece& piece,
 }
 
 std::optional<Deviation> prove_deviation(const ForwardKinematics& arm, const JointPiece& piece,
-                                         const TaskCurve& curve, double s0,
+                                         const TaskCurve& curve, double s0, AngleOf angle_of,
                                          const Deviation& tolerance, long& places) {
-  const PieceDeviation local(arm, piece, curve, s0, std::isfinite(tolerance.angle));
+  const PieceDeviation local(arm, piece, curve, s0, angle_of);
   Deviation proven;
   std::vector<Stretch> open = {{0.5 * piece.length, 0.5 * piece.length, 0}};
   int stretches = 0;
@@ -185,11 +218,16 @@ std::optional<Deviation> prove_deviation(const ForwardKinematics& arm, const Joi
 }
 
 Deviation deviation_at(const ForwardKinematics& arm, const JointPiece& piece,
-                       const TaskCurve& curve, double s0, double s) {
+                       const TaskCurve& curve, double s0, AngleOf angle_of, double s) {
   const Pose pose = arm.pose(piece.at(s).q);
   const CurvePoint on_curve = curve.at(std::clamp(s0 + s, 0.0, curve.length()));
-  return {(pose.translation() - on_curve.p).norm(),
-          rotation_distance(on_curve.rotation, pose.linear())};
+  Deviation deviation = {(pose.translation() - on_curve.p).norm(), 0.0};
+  if (angle_of == AngleOf::kRotation) {
+    deviation.angle = rotation_distance(on_curve.rotation, pose.linear());
+  } else if (angle_of == AngleOf::kAxis) {
+    deviation.angle = angle_between(on_curve.rotation.col(2), pose.linear().col(2));
+  }
+  return deviation;
 }
 
 }  // namespace viapoint

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "path/curve_follower.hpp"
@@ -98,9 +97,7 @@ class Marcher {
         curve_(curve),
         options_(options),
         follower_(arm, curve, start, options),
-        tolerance_{options.position_tolerance, options.hold == Hold::kPose
-                                                   ? options.angle_tolerance
-                                                   : std::numeric_limits<double>::infinity()},
+        tolerance_{options.position_tolerance, options.angle_tolerance},
         step_(curve.length()) {
     here_ = follower_.derivatives(0.0, start);
     result_.knots.push_back(start);
@@ -128,7 +125,7 @@ class Marcher {
  private:
   void refuse_start_off_the_curve() const {
     if (here_.residual.position <= tolerance_.position &&
-        (!std::isfinite(tolerance_.angle) || here_.residual.angle <= tolerance_.angle)) {
+        here_.residual.angle <= tolerance_.angle) {
       return;
     }
     Problem problem;
@@ -201,16 +198,15 @@ class Marcher {
     // Three samples tell quickly, and how much shorter; only the proof counts in the end.
     double ratio = 0.0;
     for (const double u : {0.5, 0.25, 0.75}) {
-      const Deviation at = deviation_at(arm_, piece, curve_, s_, u * h);
-      ratio = std::max(ratio, at.position / tolerance_.position);
-      if (std::isfinite(tolerance_.angle)) ratio = std::max(ratio, at.angle / tolerance_.angle);
+      const Deviation at = deviation_at(arm_, piece, curve_, s_, angle_kept_by(options_.hold), u * h);
+      ratio = std::max({ratio, at.position / tolerance_.position, at.angle / tolerance_.angle});
     }
     if (!(ratio <= 1.0)) {
       step_ = h * std::clamp(0.9 * std::pow(ratio, -1.0 / kErrorOrder), 0.1, 0.8);
       return false;
     }
     const std::optional<Deviation> proven =
-        prove_deviation(arm_, piece, curve_, s_, tolerance_, places_);
+        prove_deviation(arm_, piece, curve_, s_, angle_kept_by(options_.hold), tolerance_, places_);
     if (!proven) {
       step_ = 0.75 * h;
       return false;

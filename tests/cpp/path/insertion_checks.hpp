@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <random>
 
@@ -43,16 +44,20 @@ inline std::optional<Problem> problem_of(const ForwardKinematics& arm, const Joi
   return std::nullopt;
 }
 
-/// True deviation of a piece by dense samples.
+/// True deviation of a piece by dense samples: the angle of the tool's axis or of its rotation.
 inline Deviation sampled(const ForwardKinematics& arm, const JointPiece& piece,
-                         const TaskCurve& curve, double s0, int samples) {
+                         const TaskCurve& curve, double s0, int samples, Hold hold = Hold::kPose) {
   Deviation worst;
   for (int i = 0; i <= samples; ++i) {
     const double s = piece.length * i / samples;
     const Pose pose = arm.pose(piece.at(s).q);
     const CurvePoint wanted = curve.at(std::min(s0 + s, curve.length()));
     worst.position = std::max(worst.position, (pose.translation() - wanted.p).norm());
-    worst.angle = std::max(worst.angle, rotation_distance(wanted.rotation, pose.linear()));
+    const double angle =
+        hold == Hold::kAxis
+            ? std::asin(std::min(1.0, wanted.rotation.col(2).cross(pose.linear().col(2)).norm()))
+            : rotation_distance(wanted.rotation, pose.linear());
+    worst.angle = std::max(worst.angle, angle);
   }
   return worst;
 }
@@ -66,12 +71,12 @@ inline void expect_sound(const ForwardKinematics& arm, const JointLimits& limits
   for (size_t k = 0; k < found.pieces.size(); ++k) {
     const JointPiece& piece = found.pieces[k];
     ASSERT_EQ(piece.kind, PieceKind::kCurve);
-    const Deviation worst = sampled(arm, piece, curve, s0, samples);
+    const Deviation worst = sampled(arm, piece, curve, s0, samples, options.hold);
     constexpr double kRounding = 1e-14;
     ASSERT_LE(worst.position, piece.position_deviation + kRounding) << "piece " << k;
     ASSERT_LE(piece.position_deviation, options.position_tolerance);
     ASSERT_LE(piece.position_deviation, found.position_deviation);
-    if (options.hold == Hold::kPose) {
+    if (options.hold == Hold::kPose || options.hold == Hold::kAxis) {
       ASSERT_LE(worst.angle, piece.angle_deviation + 1e-13) << "piece " << k;
       ASSERT_LE(piece.angle_deviation, options.angle_tolerance);
       ASSERT_LE(piece.angle_deviation, found.angle_deviation);

@@ -52,13 +52,19 @@ TEST_P(CurveSweep, StaysWithinItsProofOrNamesTheProblem) {
   EXPECT_GT(inserted, GetParam().curves / 3);
 }
 
-INSTANTIATE_TEST_SUITE_P(Arms, CurveSweep,
-                         ::testing::Values(Sweep{"puma560", testing::puma560, Hold::kPose, 500},
-                                           Sweep{"ur5e", testing::ur5e, Hold::kPose, 300},
-                                           Sweep{"panda", testing::panda, Hold::kPose, 120},
-                                           Sweep{"scara", testing::scara, Hold::kPose, 400},
-                                           Sweep{"rpp", testing::rpp, Hold::kPosition, 500}),
-                         [](const auto& instance) { return std::string(instance.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+    Arms, CurveSweep,
+    ::testing::Values(Sweep{"puma560", testing::puma560, Hold::kPose, 500},
+                      Sweep{"ur5e", testing::ur5e, Hold::kPose, 300},
+                      Sweep{"panda", testing::panda, Hold::kPose, 120},
+                      Sweep{"puma560_axis", testing::puma560, Hold::kAxis, 300},
+                      Sweep{"ur5e_axis", testing::ur5e, Hold::kAxis, 200},
+                      Sweep{"panda_axis", testing::panda, Hold::kAxis, 60},
+                      Sweep{"torch_axis", testing::torch, Hold::kAxis, 200},
+                      Sweep{"five_axis", testing::five_joints, Hold::kAxis, 300},
+                      Sweep{"scara", testing::scara, Hold::kPose, 400},
+                      Sweep{"rpp", testing::rpp, Hold::kPosition, 500}),
+    [](const auto& instance) { return std::string(instance.param.name); });
 
 TEST(InsertCurve, SeesAnErrorThatVanishesInTheMiddle) {
   // An S about the straight joint line: at its middle, and at its quarters, nothing is wrong.

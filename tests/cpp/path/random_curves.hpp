@@ -99,12 +99,11 @@ inline JointLimits range_of(const ForwardKinematics& arm) {
 inline std::unique_ptr<TaskCurve> random_curve(const ForwardKinematics& arm, std::mt19937& random,
                                                const JointVector& start, Hold hold) {
   const Pose from = arm.pose(start);
-  const bool oriented = hold == Hold::kPose && arm.joints() >= 6;
+  const bool oriented = hold == Hold::kAxis || (hold == Hold::kPose && arm.joints() >= 6);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
   const Eigen::Vector3d center = from.translation() + random_vector(random, 0.05);
-  const Eigen::Vector3d axis = arm.joints() >= 6 || hold == Hold::kPosition
-                                   ? random_vector(random, 1.0)
-                                   : Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d axis = arm.joints() >= 6 || hold != Hold::kPose ? random_vector(random, 1.0)
+                                                                        : Eigen::Vector3d::UnitZ();
   const double angle = (unit(random) < 0.5 ? -1.0 : 1.0) * (0.2 + 6.5 * unit(random));
   switch (random() % 5) {
     case 0:

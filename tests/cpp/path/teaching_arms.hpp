@@ -88,6 +88,29 @@ inline ForwardKinematics panda() {
                         {0.107, 0, 0}});
 }
 
+/// A tool that points aside: its spin is no joint's turn.
+inline ForwardKinematics torch() {
+  Pose tool = Pose::Identity();
+  tool.translate(Eigen::Vector3d(0.05, 0.02, 0.15));
+  tool.rotate(Eigen::AngleAxisd(40.0 * kDegree, Eigen::Vector3d::UnitY()));
+  return chain_from_dh({{0, 0, -kPi / 2},
+                        {0, 0.432, 0},
+                        {0.149, -0.02, kPi / 2},
+                        {0.433, 0, -kPi / 2},
+                        {0, 0, kPi / 2},
+                        {0, 0, 0}},
+                       tool);
+}
+
+/// Too few joints for a pose, enough for a position and an axis.
+inline ForwardKinematics five_joints() {
+  return chain_from_dh({{0, 0, -kPi / 2},
+                        {0, 0.432, 0},
+                        {0.149, -0.02, kPi / 2},
+                        {0.433, 0, -kPi / 2},
+                        {0.1, 0, kPi / 2}});
+}
+
 inline JointVector joints_in_degrees(std::initializer_list<double> degrees) {
   JointVector q(static_cast<int>(degrees.size()));
   int i = 0;

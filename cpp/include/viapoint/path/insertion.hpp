@@ -16,13 +16,15 @@ namespace viapoint {
 /// Which coordinates of the tool the joints must hold.
 enum class Hold {
   kPose,      ///< position and orientation
+  kAxis,      ///< position and the direction of the tool's z axis; the spin about it is free
   kPosition,  ///< position; the orientation is free (arms that cannot hold it)
   kWrist,     ///< position by the first three joints; the others go straight to `wrist_goal`
 };
 
 struct InsertionOptions {
-  double position_tolerance = 5e-5;                ///< [m]
-  double angle_tolerance = 1.7453292519943296e-4;  ///< [rad]; unused unless Hold::kPose
+  double position_tolerance = 5e-5;  ///< [m]
+  double angle_tolerance =
+      1.7453292519943296e-4;  ///< [rad]; of the rotation, or of the axis for kAxis
   Hold hold = Hold::kPose;
   JointVector wrist_goal;  ///< (n,), entries from 3 on are used; Hold::kWrist only
 };
@@ -31,7 +33,7 @@ struct Insertion {
   std::vector<JointPiece> pieces;   ///< C², kind kCurve, s as the curve's; move left at 0
   std::vector<JointVector> knots;   ///< pieces.size() + 1
   double position_deviation = 0.0;  ///< proven [m]
-  double angle_deviation = 0.0;     ///< proven [rad]
+  double angle_deviation = 0.0;     ///< proven [rad], of what is held; 0 where nothing is
 };
 
 /// Follows the curve continuously from `start` (which must be on it): knots by Newton's method from
