@@ -153,6 +153,25 @@ class Motion:
         # mypy takes a column for a possible robot; the extension gives t, q and derivatives only.
         return Samples(**columns, robot=self.robot, tools=self.tools)  # type: ignore[arg-type]
 
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the motion and its proof into a file that ``viapoint verify`` proves anew.
+
+        Parameters
+        ----------
+        path : str or path
+            The file, by custom ``.motion.json``; written aside and renamed.
+
+        Raises
+        ------
+        EmptyProgramError
+            The motion has no pieces.
+        FileError
+            It cannot be written.
+        """
+        from ._motion_file import save_motion
+
+        save_motion(self, path)
+
     def plot(self, path: str | os.PathLike[str], what: str = "joints") -> None:
         """Draw the motion into a picture file (.png, .svg or .pdf).
 

@@ -29,6 +29,7 @@ __all__: list[str] = [
     "LARGEST_STEP",
     "Log",
     "MAX_JOINTS",
+    "MotionPieces",
     "MotionProgram",
     "MoveOptions",
     "POSITION_TOLERANCE",
@@ -43,10 +44,12 @@ __all__: list[str] = [
     "ToolCalibration",
     "VelocityEllipsoid",
     "VirtualJog",
+    "WantedLeg",
     "admit",
     "builtin_robots",
     "calibrate_tcp",
     "calibrate_tool",
+    "chain_of",
     "check",
     "checked_pose",
     "error_codes",
@@ -64,6 +67,7 @@ __all__: list[str] = [
     "run_states",
     "simulate",
     "simulate_jog",
+    "wanted_legs",
     "write_file_atomically",
 ]
 
@@ -964,6 +968,88 @@ class PlannedMotion:
     @property
     def problems(self) -> list[Problem]: ...
 
+class MotionPieces:
+    """
+    What of a motion runs, as arrays.
+    """
+    def __init__(self, motion: PlannedMotion) -> None: ...
+    @property
+    def coefficients(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Of u^k, joint by joint, of every stretch of path, (m, 6, n).
+        """
+    @property
+    def durations(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        [s], (k,).
+        """
+    @property
+    def moves(self) -> list[int]:
+        """
+        Program step, (k,).
+        """
+    @property
+    def outputs(self) -> list[tuple[int, int, bool]]:
+        """
+        Piece, output and value of every change.
+        """
+    @property
+    def path_of(self) -> list[int]:
+        """
+        Path of every piece, (k,).
+        """
+    @property
+    def timing(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Of x^k of every piece, (k, 6).
+        """
+
+class WantedLeg:
+    """
+    What a program asks of one move.
+    """
+    @property
+    def acceleration(self) -> float | None: ...
+    @property
+    def hold(self) -> str:
+        """
+        "pose", "position" or "wrist".
+        """
+    @property
+    def move(self) -> int:
+        """
+        Program step.
+        """
+    @property
+    def on_curve(self) -> bool:
+        """
+        True where the tool follows a curve, and not the joints a line or spline.
+        """
+    @property
+    def orientation(self) -> dict[str, numpy.ndarray]:
+        """
+        Steady turn or spline of the tool over s; only where on_curve.
+        """
+    @property
+    def path(self) -> dict[str, numpy.ndarray]:
+        """
+        lengths (m,) of s and coefficients (m, 6, n).
+        """
+    @property
+    def position(self) -> dict[str, numpy.ndarray]:
+        """
+        Line, helix or quintics of the tool point over s; only where on_curve.
+        """
+    @property
+    def scale(self) -> float | None: ...
+    @property
+    def speed(self) -> float | None: ...
+    @property
+    def tool(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        In the frame of the last joint, (4, 4).
+        """
+
 class Log:
     """
     Every cycle of a run as it was executed.
@@ -1127,6 +1213,11 @@ def calibrate_tool(
     along_x: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[4, 4]"],
     along_z: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[4, 4]"],
 ) -> ToolCalibration: ...
+def chain_of(robot: RobotModel) -> dict[str, numpy.ndarray]:
+    """
+    prismatic (n,), before (n, 4, 4), axis (n, 3, 1), tool (4, 4).
+    """
+
 def check(robot: RobotModel, program: MotionProgram) -> list[Problem]:
     """
     Every problem of a program, in program order.
@@ -1236,6 +1327,11 @@ def simulate_jog(
 ) -> Log:
     """
     A jog in virtual time: one record a cycle.
+    """
+
+def wanted_legs(robot: RobotModel, program: MotionProgram) -> list[WantedLeg]:
+    """
+    What a program asks of every move, in order; raises the first error of its report.
     """
 
 def write_file_atomically(path: str, content: str) -> None:

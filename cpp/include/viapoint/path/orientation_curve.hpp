@@ -75,6 +75,10 @@ class OrientationSpline final : public OrientationCurve {
   [[nodiscard]] OrientationPoint at(double s) const override;
   [[nodiscard]] OrientationBounds bounds(double s0, double s1) const override;
   [[nodiscard]] double last_break(double s0, double s1) const override;
+  /// R_k of every span.
+  [[nodiscard]] const std::vector<Eigen::Matrix3d>& bases() const { return bases_; }
+  /// φ of every span, three columns.
+  [[nodiscard]] const JointPath& vectors() const { return vectors_; }
 
  private:
   std::vector<Eigen::Matrix3d> bases_;

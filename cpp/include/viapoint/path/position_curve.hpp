@@ -50,7 +50,8 @@ class HelixCurve final : public PositionCurve {
 
   [[nodiscard]] const Eigen::Vector3d& axis() const { return axis_; }  ///< unit
   [[nodiscard]] double angle() const { return angle_; }                ///< [rad]
-  [[nodiscard]] double radius() const { return radial_.norm(); }       ///< [m]
+  [[nodiscard]] double rise() const { return rise_; }             ///< along the axis by radian [m]
+  [[nodiscard]] double radius() const { return radial_.norm(); }  ///< [m]
   [[nodiscard]] Eigen::Vector3d center() const { return foot_; }  ///< of the axis, nearest to start
   /// How far round the point nearest to `via` is passed, as a share of the whole; of an arc that
   /// goes less than once around.

@@ -54,6 +54,8 @@ class ToolCurve final : public TaskCurve {
   [[nodiscard]] CurvePoint at(double s) const override;
   [[nodiscard]] CurveBounds bounds(double s0, double s1) const override;
   [[nodiscard]] double last_break(double s0, double s1) const override;
+  [[nodiscard]] const PositionCurve& position() const { return *position_; }
+  [[nodiscard]] const OrientationCurve& orientation() const { return *orientation_; }
 
  private:
   std::unique_ptr<const PositionCurve> position_;

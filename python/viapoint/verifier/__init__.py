@@ -1,0 +1,22 @@
+"""Verifies motion files, and shares nothing with what plans motions but the format of the file.
+
+Only numpy and Python's own library are used, so that the folder also works alone:
+``python -m verifier move.json``.
+"""
+
+from ._findings import Finding, Proof, Verdict
+from ._motion_file import FORMAT, VERSION
+from ._strict_json import MotionFileError, seal
+from ._verify import verify, verify_bytes
+
+__all__ = [
+    "FORMAT",
+    "VERSION",
+    "Finding",
+    "MotionFileError",
+    "Proof",
+    "Verdict",
+    "seal",
+    "verify",
+    "verify_bytes",
+]

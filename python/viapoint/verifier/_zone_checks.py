@@ -1,0 +1,205 @@
+"""Rounded corners: within the radius, or both ways within a distance of the legs."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ._balls import Array, Ball, Indices
+from ._chain import Chain, tool_point
+from ._deviation_checks import place_on
+from ._file_parts import Corner
+from ._findings import Finding, Verdict
+from ._jets import constant, largest, polynomial_jets
+from ._motion_file import MotionFile
+from ._search import prove_below
+
+SHARE_SLACK = 1e-6
+"""Of a zone, relative: rounding of what the planner proved just within it."""
+SAMPLES = 65
+
+
+def check_zones(motion: MotionFile, verdict: Verdict) -> None:
+    """Prove what every rounded corner claims to use of its zone."""
+    rounded = [k for k, c in enumerate(motion.corners) if not c.stopped]
+    for kind, name in (
+        ("radius", "corners by radius"),
+        ("deviation", "corners by deviation"),
+        ("joint_deviation", "corners by joint deviation"),
+    ):
+        corners = [k for k in rounded if motion.corners[k].kind == kind]
+        if not corners:
+            continue
+        if kind != "joint_deviation" and motion.chain is None:
+            verdict.findings.append(Finding("a zone at the tool of an arm without a chain"))
+            continue
+        before = len(verdict.findings)
+        check = _RadiusCheck if kind == "radius" else _DeviationCheck
+        worst = check(motion, corners).judge(verdict)
+        verdict.prove(name, f"{worst:.6f} of their size", "1, and as claimed", before)
+
+
+def _pairs(motion: MotionFile, corners: list[int]) -> tuple[list[int], list[int], list[bool]]:
+    """Paths to look at, the corner of each, and whether it is one of the legs (cut off)."""
+    paths: list[int] = []
+    owners: list[int] = []
+    cut: list[bool] = []
+    run = range(int(motion.path_of[-1]) + 1)
+    blends: dict[int, list[int]] = {}
+    for i in run:
+        if (corner := motion.stretches[i].corner) is not None:
+            blends.setdefault(corner, []).append(i)
+    for k in corners:
+        corner_ = motion.corners[k]
+        blend = blends.get(k, [])
+        legs = [*corner_.before, *corner_.after]
+        paths += [*blend, *legs]
+        owners += [k] * (len(blend) + len(legs))
+        cut += [False] * len(blend) + [True] * len(legs)
+    return paths, owners, cut
+
+
+class _Check:
+    what = ""
+
+    def __init__(self, motion: MotionFile, corners: list[int]) -> None:
+        self.motion = motion
+        paths, owners, cut = _pairs(motion, corners)
+        self.paths = np.array(paths, dtype=np.intp)
+        self.owners = np.array(owners, dtype=np.intp)
+        self.cut = np.array(cut, dtype=bool)
+        self.in_joints = motion.corners[corners[0]].kind == "joint_deviation"
+
+    def judge(self, verdict: Verdict) -> float:
+        """Add what is wrong; return the worst share of a zone that is proven."""
+        zones: list[Corner] = [self.motion.corners[k] for k in self.owners]
+        used = np.array([c.used for c in zones]) * (1.0 + SHARE_SLACK) + 1e-12
+        worst = prove_below(self.bounds, used, parts=4)
+        for item in np.flatnonzero(~worst.proven):
+            verdict.findings.append(
+                Finding(
+                    f"{self.what} (corner {self.owners[item]})",
+                    value=float(worst.bound[item]),
+                    limit=zones[item].used,
+                    **place_on(self.motion, int(self.paths[item]), float(worst.at[item])),
+                )
+            )
+        return float((worst.bound / np.array([max(c.asked, 1e-300) for c in zones])).max())
+
+    def bounds(self, items: Indices, middle: Array, half: Array) -> tuple[Array, Array]:
+        """Bound what the zone limits."""
+        raise NotImplementedError
+
+    def points(self, paths: Indices, middle: Array, half: Array, tool: Array) -> Ball:
+        """Jets of the tool point, or of the joints where the zone is in joints."""
+        rows = np.moveaxis(self.motion.paths[paths], 0, -1)
+        joints = polynomial_jets(Ball.exact(rows), middle, half)
+        if self.in_joints or self.motion.chain is None:
+            return joints
+        return tool_point(self.motion.chain, tool, joints)
+
+    def tools(self, items: Indices) -> Indices:
+        """Tool of each item."""
+        legs = [self.motion.corners[k].leg for k in self.owners[items]]
+        return np.array([self.motion.legs[leg].tool for leg in legs], dtype=np.intp)
+
+
+class _RadiusCheck(_Check):
+    what = "the path leaves the zone"
+
+    def bounds(self, items: Indices, middle: Array, half: Array) -> tuple[Array, Array]:
+        """Distance from the corner's point."""
+        bound, reached = np.empty(len(items)), np.empty(len(items))
+        tools = self.tools(items)
+        for number in np.unique(tools):
+            chosen = np.flatnonzero(tools == number)
+            of = items[chosen]
+            tool = self.motion.tools[number]
+            there = self.points(self.paths[of], middle[chosen], half[chosen], tool)
+            last = np.array([self.motion.corners[k].before[-1] for k in self.owners[of]])
+            # The corner's own point: the end of what is cut off the leg before.
+            end = self.points(last, np.ones(len(of)), np.zeros(len(of)), tool)[0][..., : len(of)]
+            corner = Ball(np.tile(end.mid, 2), np.tile(end.rad, 2))
+            bound[chosen], reached[chosen] = largest(there - constant(corner))
+        return bound, reached
+
+
+class _DeviationCheck(_Check):
+    what = "path and legs are farther apart than claimed"
+
+    def __init__(self, motion: MotionFile, corners: list[int]) -> None:
+        super().__init__(motion, corners)
+        u = np.linspace(0.0, 1.0, SAMPLES)
+        powers = np.vander(u, 6, increasing=True)
+        q = np.einsum("sk,mkn->msn", powers, motion.paths[self.paths])
+        self.lines = q
+        if not self.in_joints and motion.chain is not None:
+            tools = self.tools(np.arange(len(self.paths)))
+            self.lines = np.stack(
+                [
+                    points_at(motion.chain, motion.tools[t], row)
+                    for t, row in zip(tools, q, strict=True)
+                ]
+            )
+        self.of_corner = {
+            k: (
+                np.flatnonzero((self.owners == k) & ~self.cut),
+                np.flatnonzero((self.owners == k) & self.cut),
+            )
+            for k in corners
+        }
+
+    def bounds(self, items: Indices, middle: Array, half: Array) -> tuple[Array, Array]:
+        """Bound the distance from near points of the others: so that of the nearest, too."""
+        bound, reached = np.empty(len(items)), np.zeros(len(items))
+        tools = self.tools(items)
+        target, place, width = self._near(items, middle, half)
+        for number in np.unique(tools):
+            chosen = np.flatnonzero(tools == number)
+            of = items[chosen]
+            tool = self.motion.tools[number]
+            here = self.points(self.paths[of], middle[chosen], half[chosen], tool)
+            there = self.points(self.paths[target[chosen]], place[chosen], width[chosen], tool)
+            # What is reached is from one near point, no less than from the nearest: no refutation.
+            bound[chosen], _ = largest(here - there)
+        return bound, reached
+
+    def _near(self, items: Indices, middle: Array, half: Array) -> tuple[Indices, Array, Array]:
+        """For each interval another path, and the interval of it that goes along with it."""
+        target = np.empty(len(items), dtype=np.intp)
+        place, width = np.empty(len(items)), np.empty(len(items))
+        for i, (item, m, h) in enumerate(zip(items, middle, half, strict=True)):
+            blend, legs = self.of_corner[int(self.owners[item])]
+            others = blend if self.cut[item] else legs
+            points = self._at(item, np.array([m - h, m, m + h]))
+            distances, _ = _project(points[1], self.lines[others])
+            target[i] = others[np.argmin(distances)]
+            line = self.lines[target[i]][None]
+            low, high = (float(_project(points[k], line)[1][0]) for k in (0, 2))
+            place[i], width[i] = 0.5 * (low + high), 0.5 * (high - low)
+        return target, place, width
+
+    def _at(self, item: int, u: Array) -> Array:
+        """Points in plain rounding."""
+        q: Array = np.vander(u, 6, increasing=True) @ self.motion.paths[self.paths[item]]
+        if self.in_joints or self.motion.chain is None:
+            return q
+        tool = self.motion.tools[int(self.tools(np.array([item]))[0])]
+        return points_at(self.motion.chain, tool, q)
+
+
+def points_at(chain: Chain, tool: Array, q: Array) -> Array:
+    """Tool points of joints (k, n), in plain rounding, (k, 3)."""
+    jets = polynomial_jets(Ball.exact(q.T[None]), np.zeros(len(q)), np.zeros(len(q)))
+    points: Array = tool_point(chain, tool, jets).mid[0, :, : len(q)].T
+    return points
+
+
+def _project(point: Array, lines: Array) -> tuple[Array, Array]:
+    """Distance of a point from polygons (m, k, d), and where on each, 0 to 1, it is nearest."""
+    begin, edge = lines[:, :-1], np.diff(lines, axis=1)
+    square = np.maximum(np.sum(edge**2, axis=2), 1e-300)
+    along = np.clip(np.sum((point - begin) * edge, axis=2) / square, 0.0, 1.0)
+    distance = np.linalg.norm(begin + along[..., None] * edge - point, axis=2)
+    best = distance.argmin(axis=1)
+    rows = np.arange(len(lines))
+    return distance[rows, best], (best + along[rows, best]) / edge.shape[1]
