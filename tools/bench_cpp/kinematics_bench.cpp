@@ -116,57 +116,61 @@ void branches_of(const std::string& name, const RobotModel& robot, int poses) {
       .add("p99_us", 1e6 * durations.quantile(0.99));
 }
 
-/// The nearest solution to random joints: far from them in general.
-void nearest_of(const std::string& name, const RobotModel& robot, const InverseKinematics& inverse,
-                int poses) {
+/// Where the joints are that a solver is told to stay near.
+enum class Near {
+  kAnywhere,  ///< at random, far from the answer in general
+  kOnTheWay,  ///< within kStep of joints that make the pose, as from one pose of a way to the next
+};
+constexpr double kStep = 0.05;  // [rad or m]
+
+/// One solution within the limits for each pose.
+/// @param solve (pose, near) to joints, or nothing; it may throw
+template <typename Solve>
+void one_of(const std::string& name, const RobotModel& robot, Near kind, int poses, Solve&& solve) {
   std::mt19937_64 generator(2);
+  std::uniform_real_distribution<double> step(-kStep, kStep);
   const double own = clock_cost([](auto&& action) { return processor_time_of(action); });
   Durations durations;
   durations.reserve(static_cast<size_t>(poses));
   int unsolved = 0;
   double worst = 0.0;
+  double change = 0.0;
   for (int i = 0; i < poses; ++i) {
-    const Pose pose = robot.forward().pose(random_joints(robot.limits(), generator));
-    const JointVector near = random_joints(robot.limits(), generator);
-    try {
-      JointVector q;
-      durations.add(processor_time_of([&] { q = inverse.solve_near(pose, near); }) - own);
-      worst = std::max(worst, miss(robot, q, pose));
-    } catch (const MotionError&) {
-      ++unsolved;
+    const JointVector made_by = random_joints(robot.limits(), generator);
+    const Pose pose = robot.forward().pose(made_by);
+    JointVector near = made_by;
+    if (kind == Near::kAnywhere) {
+      near = random_joints(robot.limits(), generator);
+    } else {
+      for (double& value : near) value += step(generator);
     }
+    std::optional<JointVector> q;
+    try {
+      durations.add(processor_time_of([&] { q = solve(pose, near); }) - own);
+    } catch (const MotionError&) {
+      q.reset();
+    }
+    if (q) worst = std::max(worst, miss(robot, *q, pose));
+    if (q) change += (*q - near).lpNorm<Eigen::Infinity>();
+    unsolved += q ? 0 : 1;
   }
-  JsonLine("kinematics", name + " nearest")
+  JsonLine("kinematics", name)
       .add("poses", poses)
       .add("unsolved", unsolved)
+      .add("mean_change", change / std::max(1, poses - unsolved))
       .add("worst_error", worst)
       .add("p50_us", 1e6 * durations.quantile(0.5))
       .add("p99_us", 1e6 * durations.quantile(0.99));
 }
 
-/// A solution within the limits from random joints, found without a closed form.
-void search_of(const std::string& name, const RobotModel& robot, const NumericalInverse& inverse,
-               int poses) {
-  std::mt19937_64 generator(2);
-  const double own = clock_cost([](auto&& action) { return processor_time_of(action); });
-  Durations durations;
-  durations.reserve(static_cast<size_t>(poses));
-  int unsolved = 0;
-  double worst = 0.0;
-  for (int i = 0; i < poses; ++i) {
-    const Pose pose = robot.forward().pose(random_joints(robot.limits(), generator));
-    const JointVector near = random_joints(robot.limits(), generator);
-    std::optional<JointVector> q;
-    durations.add(processor_time_of([&] { q = inverse.find(InverseTask(pose), near); }) - own);
-    if (q) worst = std::max(worst, miss(robot, *q, pose));
-    unsolved += q ? 0 : 1;
-  }
-  JsonLine("kinematics", name + " searched")
-      .add("poses", poses)
-      .add("unsolved", unsolved)
-      .add("worst_error", worst)
-      .add("p50_us", 1e6 * durations.quantile(0.5))
-      .add("p99_us", 1e6 * durations.quantile(0.99));
+/// The solution nearest to joints anywhere, and to those one step of a way before.
+void nearest_of(const std::string& name, const RobotModel& robot, const InverseKinematics& inverse,
+                int poses) {
+  const auto solve = [&](const Pose& pose, const JointVector& near) {
+    return inverse.solve_near(pose, near);
+  };
+  one_of(name + " nearest", robot, Near::kAnywhere, poses, solve);
+  one_of(name + " nearest, on a way", robot, Near::kOnTheWay, poses, solve);
 }
 
 }  // namespace
@@ -195,7 +199,10 @@ void bench_kinematics(int poses) {
   for (const std::string name : {"puma560", "ur5e", "panda", "iiwa14"}) {
     const RobotPtr robot = RobotModel::make(load_description(name));
     const NumericalInverse numerical(robot->forward(), robot->limits(), "as measured");
-    search_of(name, *robot, numerical, std::max(1, poses / kSlower));
+    one_of(name + " searched", *robot, Near::kAnywhere, std::max(1, poses / kSlower),
+           [&](const Pose& pose, const JointVector& near) {
+             return numerical.find(InverseTask(pose), near);
+           });
     nearest_of(name + " by search", *robot, numerical, std::max(1, poses / kSlower));
   }
 }

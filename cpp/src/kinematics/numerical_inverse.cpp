@@ -14,7 +14,7 @@ constexpr int kMissIterations = 2000;  ///< of the one that measures how far a p
 constexpr int kStarts = 60;            ///< descents before a pose is given up
 constexpr int kSearchStarts = 200;     ///< descents when every branch is wanted
 constexpr int kIdleStarts = 40;        ///< descents in a row that find nothing new end that search
-constexpr int kNearStarts = 24;        ///< descents that look for a nearer branch
+constexpr int kNearStarts = 16;        ///< descents that look for a nearer branch
 constexpr double kNearEnough =
     0.35;  ///< a change of every joint below this needs no such look [rad]
 
@@ -141,15 +141,19 @@ std::vector<JointVector> NumericalInverse::all(const InverseTask& task,
 }
 
 JointVector NumericalInverse::near(const InverseTask& task, const JointVector& reference) const {
-  Search found = search(task, reference, kStarts, 1);
+  const Search found = search(task, reference, kStarts, 1);
   if (found.inside.empty()) refuse(task, found);
   const double change = (found.inside.front() - reference).lpNorm<Eigen::Infinity>();
   if (redundant(task) || change < kNearEnough) return found.inside.front();
   // The descent may have passed over a nearer branch.
-  for (const JointVector& q : search(task, reference, kNearStarts, SIZE_MAX).inside) {
-    if (is_nearer(q, found.inside.front(), reference)) found.inside.front() = q;
+  JointVector best = found.inside.front();
+  for (int index = 1; index <= kNearStarts; ++index) {
+    const Descent::End end = descent_.run(task, start(index), {});
+    if (!end.error.within(kPoseTolerance)) continue;
+    const auto turned = turns_.nearest(end.q, reference);
+    if (turned && is_nearer(*turned, best, reference) && confirmed(task, *turned)) best = *turned;
   }
-  return found.inside.front();
+  return best;
 }
 
 std::optional<JointVector> NumericalInverse::follow(const InverseTask& task,
