@@ -103,6 +103,8 @@ std::string hold_name(Hold hold) {
   switch (hold) {
     case Hold::kPose:
       return "pose";
+    case Hold::kAxis:
+      return "axis";
     case Hold::kPosition:
       return "position";
     case Hold::kWrist:
@@ -232,7 +234,7 @@ void bind_motion_file(py::module_& m) {
           "Steady turn or spline of the tool over s; only where on_curve.")
       .def_property_readonly(
           "hold", [](const WantedLeg& leg) { return hold_name(leg.hold); },
-          "\"pose\", \"position\" or \"wrist\".")
+          "\"pose\", \"axis\", \"position\" or \"wrist\".")
       .def_property_readonly(
           "tool", [](const WantedLeg& leg) { return tool_of(*leg.robot); },
           "In the frame of the last joint, (4, 4).")

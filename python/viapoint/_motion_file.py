@@ -150,7 +150,7 @@ class _Writer:
         if leg.on_curve:
             row["hold"] = leg.hold
             row["position"] = _plain(leg.position)
-            if leg.hold == "pose":
+            if leg.hold in ("pose", "axis"):
                 row["orientation"] = _plain(leg.orientation)
             row |= {k: v for k in ("speed", "acceleration") if (v := getattr(leg, k)) is not None}
         else:

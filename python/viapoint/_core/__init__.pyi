@@ -1013,7 +1013,7 @@ class WantedLeg:
     @property
     def hold(self) -> str:
         """
-        "pose", "position" or "wrist".
+        "pose", "axis", "position" or "wrist".
         """
     @property
     def move(self) -> int:

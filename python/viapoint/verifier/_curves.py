@@ -7,7 +7,7 @@ from math import factorial
 
 import numpy as np
 
-from ._balls import ROUNDING, WIDER, Array, Ball, Indices
+from ._balls import ROUNDING, WIDER, Array, Ball, Indices, join
 from ._chain import apply, column, quaternion
 from ._jets import ORDER, constant, over_interval, product, sine_cosine_jets, split_jets
 
@@ -169,6 +169,21 @@ def relative_turn(curve: Ball, tool: Ball) -> Ball:
     a, b = tool[:, :1], tool[:, 1:]
     cross = _crossed(v, b)
     return product(w, b) - product(a, v) - cross
+
+
+def half_axis_off(curve: Ball, tool: Ball) -> Ball:
+    """Half of what the z axes of two rotations differ by, (p + 1, 3, N), from their quaternions."""
+    return (_z_axis(tool) - _z_axis(curve)).scaled(0.5)
+
+
+def _z_axis(turn: Ball) -> Ball:
+    w, x, y, z = (turn[:, i : i + 1] for i in range(4))
+    rows = (
+        (product(x, z) + product(w, y)).scaled(2.0),
+        (product(y, z) - product(w, x)).scaled(2.0),
+        constant(Ball.exact(np.ones((1, 1)))) - (product(x, x) + product(y, y)).scaled(2.0),
+    )
+    return join(list(rows), axis=1)
 
 
 def _crossed(a: Ball, b: Ball) -> Ball:

@@ -9,8 +9,8 @@ import numpy as np
 
 from ._balls import Array, Ball, Indices
 from ._chain import Chain, tool_point, tool_rotation
-from ._curves import Quintics, TurnSpline, parameter_jets, relative_turn
-from ._file_parts import Leg
+from ._curves import Quintics, TurnSpline, half_axis_off, parameter_jets, relative_turn
+from ._file_parts import TURNING, Leg
 from ._findings import Finding, Verdict
 from ._jets import largest, polynomial_jets
 from ._motion_file import MotionFile
@@ -29,7 +29,7 @@ def check_deviation(motion: MotionFile, verdict: Verdict) -> None:
     on_legs = [i for i, s in enumerate(motion.stretches) if s.leg is not None]
     joints = [i for i in on_legs if _leg(motion, i).hold == "joints"]
     curves = [i for i in on_legs if _leg(motion, i).hold != "joints"]
-    turns = [i for i in curves if _leg(motion, i).hold == "pose"]
+    turns = [i for i in curves if _leg(motion, i).hold in TURNING]
     _check_joints(motion, joints, verdict)
     if motion.chain is None:
         if curves:
@@ -119,10 +119,12 @@ class _Along:
             span = _span(spline.vectors if isinstance(spline, TurnSpline) else None, s_middle)
             curve = spline.jets(s, span)
             tool = self._motion.tools[leg.tool]
-            return relative_turn(curve, tool_rotation(self._chain, tool, q[..., columns]))
+            turn = tool_rotation(self._chain, tool, q[..., columns])
+            return half_axis_off(curve, turn) if leg.hold == "axis" else relative_turn(curve, turn)
 
         bound, reached = self._by_leg(items, middle, half, off)
-        # The vector part of a unit quaternion is the sine of half its angle.
+        # The vector part of a unit quaternion is the sine of half its angle, as long as half of
+        # what unit vectors of that angle are apart.
         return (
             2.0 * np.arcsin(np.minimum(bound, 1.0)) * (1.0 + 1e-12),
             2.0 * np.arcsin(np.minimum(reached, 1.0)) * (1.0 - 1e-12),

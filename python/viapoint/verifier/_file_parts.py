@@ -24,6 +24,9 @@ from ._strict_json import (
 MOST_JOINTS = 16
 MOST_STEPS = 10**9
 ROTATION_SLACK = 1e-9
+HOLDS = ("joints", "pose", "axis", "position", "wrist")
+TURNING = ("pose", "axis")
+"""Those that hold the orientation, or its z axis."""
 KINDS = ("velocity", "acceleration", "jerk")
 
 
@@ -150,7 +153,7 @@ def leg_in(value: object, place: str, n: int, tools: int) -> Leg:
         "move tool hold length",
         "joints position orientation speed acceleration scale file line",
     )
-    hold = text(given["hold"], f"{place}.hold", ("joints", "pose", "position", "wrist"))
+    hold = text(given["hold"], f"{place}.hold", HOLDS)
     joints: Quintics | None = None
     position: Position | None = None
     orientation: Orientation | None = None
@@ -162,7 +165,7 @@ def leg_in(value: object, place: str, n: int, tools: int) -> Leg:
         position = _position(given.get("position"), f"{place}.position")
         if isinstance(position, Quintics):
             _require_length(position, length, place)
-    if hold == "pose":
+    if hold in TURNING:
         orientation = _orientation(given.get("orientation"), f"{place}.orientation")
         if isinstance(orientation, TurnSpline):
             _require_length(orientation.vectors, length, place)
