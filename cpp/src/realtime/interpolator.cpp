@@ -1,6 +1,7 @@
 #include "viapoint/realtime/interpolator.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace viapoint {
 namespace {
@@ -10,16 +11,20 @@ constexpr double kEndSlack = 1e-9;
 /// New cells of the look-ahead a cycle: two are used up at full rate, the rest fills the window in
 /// the first half second.
 constexpr int kCellsACycle = 8;
+/// Rates below these shares of the limits are those of a path at rest, but for rounding.
+constexpr double kRestShare = 1e-6;
 
 }  // namespace
 
 Interpolator::Interpolator(const JointLimits& limits, std::chrono::nanoseconds cycle,
                            const JointVector& position)
-    : cycle_(std::chrono::duration<double>(cycle).count()),
+    : limits_(limits),
+      cycle_(std::chrono::duration<double>(cycle).count()),
       governor_(limits, cycle_),
       jog_(limits, cycle_),
       jog_cycles_(static_cast<int>(kJogLease / cycle) + 1),
       lookahead_(limits, governor_.cell()),
+      return_(limits, cycle_),
       position_(position) {
   shown_ = {0.0, 0.0, 0.0};
 }
@@ -27,6 +32,9 @@ Interpolator::Interpolator(const JointLimits& limits, std::chrono::nanoseconds c
 void Interpolator::begin(const Trajectory& motion) noexcept VIAPOINT_NONBLOCKING {
   motion_ = &motion;
   wish_ = Wish::kRun;
+  direction_ = Direction::kForward;
+  off_path_ = false;
+  return_.drop();
   // At rest any rate is as good as any other: the motion starts at the one wanted.
   now_ = {0.0, override_, 0.0};
   anchor_ = 0.0;
@@ -35,6 +43,7 @@ void Interpolator::begin(const Trajectory& motion) noexcept VIAPOINT_NONBLOCKING
   lookahead_.begin(motion);
   run_state_ = RunState::kRunning;
   outputs_before_ = outputs_;
+  farthest_piece_ = 0;
   enter_piece(0);
 }
 
@@ -43,7 +52,9 @@ void Interpolator::set_override(double share) noexcept VIAPOINT_NONBLOCKING {
 }
 
 void Interpolator::wish(Wish wish) noexcept VIAPOINT_NONBLOCKING {
-  if (wish_ != Wish::kStop) wish_ = wish;
+  if (is_stop() && wish != Wish::kRelease) return;
+  wish_ = wish;
+  step_move_ = kNoMove;
 }
 
 void Interpolator::abandon() noexcept VIAPOINT_NONBLOCKING {
@@ -53,36 +64,106 @@ void Interpolator::abandon() noexcept VIAPOINT_NONBLOCKING {
 }
 
 void Interpolator::jog(const JointVector& velocity) noexcept VIAPOINT_NONBLOCKING {
-  if (motion_ != nullptr || run_state_ == RunState::kFault) return;
-  jog_.wish(velocity, jog_cycles_, position_);
+  const bool is_free = motion_ == nullptr
+                           ? run_state_ != RunState::kFault
+                           : wish_ == Wish::kPause && (run_state_ == RunState::kPaused ||
+                                                       run_state_ == RunState::kJogging);
+  if (is_free) jog_.wish(velocity, jog_cycles_, position_);
 }
 
-double Interpolator::target() const noexcept { return wish_ == Wish::kRun ? override_ : 0.0; }
+bool Interpolator::is_stop() const noexcept {
+  return wish_ == Wish::kStop || wish_ == Wish::kRelease;
+}
+
+bool Interpolator::wants_motion() const noexcept {
+  if (wish_ == Wish::kPause || is_stop()) return false;
+  const bool is_at_start = direction_ == Direction::kBackward && now_.tau >= motion_->duration();
+  return override_ > 0.0 && !(wish_ == Wish::kBackward && is_at_start);
+}
+
+double Interpolator::target() const noexcept {
+  const auto wanted = wish_ == Wish::kBackward ? Direction::kBackward : Direction::kForward;
+  return wants_motion() && direction_ == wanted ? override_ : 0.0;
+}
+
+/// From a time along the way to the nominal one, and back.
+double Interpolator::nominal(double way) const noexcept {
+  return direction_ == Direction::kForward ? way : std::max(0.0, motion_->duration() - way);
+}
 
 RunState Interpolator::tick(Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKING {
   setpoint.cycle = cycles_++;
-  if (motion_ == nullptr && jog_.active()) {
-    shown_ = {0.0, 0.0, 0.0};
-    move_ = -1;
-    jog_.tick(setpoint);
-    position_ = setpoint.q;
-    setpoint.outputs = outputs_;
-    run_state_ = jog_.active() ? RunState::kJogging : RunState::kIdle;
-    return run_state_;
-  }
+  if (jog_.active()) return tick_jog(setpoint);
   if (motion_ == nullptr) {
     shown_.rate = 0.0;
-    setpoint.q = position_;
-    setpoint.qd.setZero(position_.size());
-    setpoint.qdd.setZero(position_.size());
-    setpoint.qddd.setZero(position_.size());
-    setpoint.outputs = outputs_;
+    hold(setpoint);
     return run_state_;
   }
-  const bool untouched = now_.tau == 0.0 && !governor_.changing();
+  return off_path_ ? tick_return(setpoint) : tick_motion(setpoint);
+}
+
+void Interpolator::hold(Setpoint& setpoint) const noexcept VIAPOINT_NONBLOCKING {
+  setpoint.q = position_;
+  setpoint.qd.setZero(position_.size());
+  setpoint.qdd.setZero(position_.size());
+  setpoint.qddd.setZero(position_.size());
+  setpoint.outputs = outputs_;
+}
+
+RunState Interpolator::tick_jog(Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKING {
+  if (motion_ == nullptr) {
+    shown_ = {0.0, 0.0, 0.0};
+    move_ = -1;
+  } else {
+    off_path_ = true;
+    if (wish_ != Wish::kPause) jog_.wish(JointVector::Zero(position_.size()), 0, position_);
+  }
+  jog_.tick(setpoint);
+  position_ = setpoint.q;
+  setpoint.outputs = outputs_;
+  run_state_ = motion_ == nullptr ? RunState::kIdle : RunState::kPaused;
+  if (jog_.active()) run_state_ = RunState::kJogging;
+  return run_state_;
+}
+
+RunState Interpolator::tick_return(Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKING {
+  const double share = wants_motion() ? override_ : 0.0;
+  if (!return_.active() && share > 0.0) {
+    const double tau = nominal(now_.tau);
+    return_.begin(position_, motion_->pieces()[piece_].at(motion_->time_in(piece_, tau)).q);
+  }
+  bool rests = true;
+  if (return_.active()) {
+    return_.tick(share, setpoint);
+    position_ = setpoint.q;
+    setpoint.outputs = outputs_;
+    rests = return_.rests() && share == 0.0;
+    off_path_ = !return_.arrived();
+    if (rests || !off_path_) return_.drop();
+  } else {
+    hold(setpoint);
+  }
+  if (is_stop()) {
+    run_state_ = rests ? RunState::kStopped : RunState::kStopping;
+    if (rests) motion_ = nullptr;
+  } else {
+    run_state_ = share > 0.0 ? RunState::kReturning
+                 : rests     ? RunState::kPaused
+                             : RunState::kPausing;
+  }
+  return run_state_;
+}
+
+RunState Interpolator::tick_motion(Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKING {
+  turn_where_wanted();
+  const bool untouched =
+      now_.tau == 0.0 && direction_ == Direction::kForward && !governor_.changing();
   if (untouched) {
     now_.rate = target();
     since_anchor_ = 0;
+  }
+  if (wish_ == Wish::kStep && step_move_ == kNoMove && direction_ == Direction::kForward) {
+    step_move_ = motion_->pieces()[piece_].move;
   }
 
   looked_at_ = lookahead_.advance(now_.tau, kCellsACycle, kPiecesACycle);
@@ -95,6 +176,24 @@ RunState Interpolator::tick(Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKING {
     move_on();
   }
   return run_state_;
+}
+
+/// The way back is a motion of its own, that begins at rest where this one has come to rest.
+void Interpolator::turn_where_wanted() noexcept VIAPOINT_NONBLOCKING {
+  if (!wants_motion() || now_.rate != 0.0 || governor_.changing()) return;
+  const auto wanted = wish_ == Wish::kBackward ? Direction::kBackward : Direction::kForward;
+  if (wanted == direction_) return;
+  const double tau = nominal(now_.tau);
+  direction_ = wanted;
+  rest_at(nominal(tau));
+  lookahead_.begin(*motion_, direction_);
+}
+
+void Interpolator::rest_at(double way) noexcept VIAPOINT_NONBLOCKING {
+  now_ = {way, 0.0, 0.0};
+  anchor_ = way;
+  since_anchor_ = 0;
+  governor_.reset();
 }
 
 void Interpolator::describe(const Setpoint& setpoint,
@@ -111,26 +210,29 @@ void Interpolator::describe(const Setpoint& setpoint,
 }
 
 RunState Interpolator::classify() const noexcept {
-  if (now_.tau >= motion_->duration()) return RunState::kFinished;
+  if (nominal(now_.tau) >= motion_->duration() && direction_ == Direction::kForward) {
+    return RunState::kFinished;
+  }
   const bool at_rest = now_.rate == 0.0 && !governor_.changing();
-  if (wish_ == Wish::kStop) return at_rest ? RunState::kStopped : RunState::kStopping;
-  if (target() > 0.0) return RunState::kRunning;
+  if (is_stop()) return at_rest ? RunState::kStopped : RunState::kStopping;
+  if (wants_motion()) return RunState::kRunning;
   return at_rest ? RunState::kPaused : RunState::kPausing;
 }
 
 void Interpolator::evaluate(double curvature, Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKING {
   const TrajectoryPiece& piece = motion_->pieces()[piece_];
-  const JointState path = piece.at(motion_->time_in(piece_, now_.tau));
-  const double rate = now_.rate, slope = now_.slope;
+  const double sign = direction_ == Direction::kForward ? 1.0 : -1.0;
+  shown_ = {nominal(now_.tau), sign * now_.rate, sign * now_.slope};
+  const JointState path = piece.at(motion_->time_in(piece_, shown_.tau));
+  const double rate = shown_.rate, slope = shown_.slope;
   setpoint.q = path.q;
   setpoint.qd = path.qd * rate;
   setpoint.qdd = path.qdd * (rate * rate) + path.qd * slope;
-  setpoint.qddd =
-      path.qddd * (rate * rate * rate) + path.qdd * (3.0 * rate * slope) + path.qd * curvature;
+  setpoint.qddd = path.qddd * (rate * rate * rate) + path.qdd * (3.0 * rate * slope) +
+                  path.qd * (sign * curvature);
   setpoint.outputs = outputs_;
   position_ = path.q;
   move_ = piece.move;
-  shown_ = now_;
 }
 
 void Interpolator::move_on() noexcept VIAPOINT_NONBLOCKING {
@@ -142,13 +244,46 @@ void Interpolator::move_on() noexcept VIAPOINT_NONBLOCKING {
     ++since_anchor_;
     now_.tau = anchor_ + static_cast<double>(since_anchor_) * cycle_ * now_.rate;
   }
-  if (now_.tau > motion_->duration() - kEndSlack) now_.tau = motion_->duration();
-  enter_piece(motion_->piece_at(now_.tau));
+  if (now_.tau > motion_->duration() - kEndSlack) {
+    now_.tau = motion_->duration();
+    if (direction_ == Direction::kBackward) rest_at(now_.tau);
+  }
+  const std::size_t piece = motion_->piece_at(nominal(now_.tau));
+  if (step_move_ != kNoMove && motion_->pieces()[piece].move != step_move_) {
+    end_step(piece);
+  } else {
+    enter_piece(piece);
+  }
+}
+
+/// The step's move has ended before `piece`, or at its start.
+void Interpolator::end_step(std::size_t piece) noexcept VIAPOINT_NONBLOCKING {
+  std::size_t first = piece;
+  for (int i = 0; i < kPiecesACycle && first > piece_; ++i, --first) {
+    if (motion_->pieces()[first - 1].move == step_move_) break;
+  }
+  wish_ = Wish::kPause;
+  step_move_ = kNoMove;
+  if (rests_at_start_of(first)) {
+    rest_at(motion_->start_of(first));
+    piece = first;
+  }
+  enter_piece(piece);
+}
+
+bool Interpolator::rests_at_start_of(std::size_t piece) const noexcept VIAPOINT_NONBLOCKING {
+  const JointState path = motion_->pieces()[piece].at(0.0);
+  for (int i = 0; i < limits_.joints(); ++i) {
+    if (std::abs(path.qd[i]) > kRestShare * limits_.velocity[i]) return false;
+    if (std::abs(path.qdd[i]) > kRestShare * limits_.acceleration[i]) return false;
+  }
+  return true;
 }
 
 void Interpolator::enter_piece(std::size_t piece) noexcept VIAPOINT_NONBLOCKING {
   piece_ = piece;
-  const OutputEffect& effect = motion_->outputs_after(piece);
+  farthest_piece_ = std::max(farthest_piece_, piece);
+  const OutputEffect& effect = motion_->outputs_after(farthest_piece_);
   outputs_ = (outputs_before_ & ~effect.changed) | effect.on;
 }
 

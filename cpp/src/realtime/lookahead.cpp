@@ -19,6 +19,8 @@ Range between(double a, double b, double speed, double time, double limit) noexc
   return {std::max(middle - reach, -limit), std::min(middle + reach, limit)};
 }
 
+Range mirrored(const Range& range) noexcept { return {-range.high, -range.low}; }
+
 double magnitude(const Range& range) noexcept { return std::max(-range.low, range.high); }
 
 /// Bounds |P^(k)| for k = 0 … 5 of the quintic with coefficients c within `radius` of `centre`: the
@@ -78,8 +80,10 @@ Lookahead::Lookahead(const JointLimits& limits, double cell)
       width_(cell),
       cells_(kCells) {}
 
-void Lookahead::begin(const Trajectory& trajectory) noexcept VIAPOINT_NONBLOCKING {
+void Lookahead::begin(const Trajectory& trajectory,
+                      Direction direction) noexcept VIAPOINT_NONBLOCKING {
   trajectory_ = &trajectory;
+  direction_ = direction;
   piece_ = 0;
   begun_ = false;
   first_ = 0;
@@ -91,7 +95,9 @@ int Lookahead::advance(double tau, int cells, int pieces) noexcept VIAPOINT_NONB
   if (end_ < first_) {  // the motion has overtaken its future: give up what lies between
     end_ = first_;
     begun_ = false;
-    piece_ = trajectory_->piece_at(static_cast<double>(end_) * width_);
+    const double t = static_cast<double>(end_) * width_;
+    piece_ = index_of(
+        trajectory_->piece_at(direction_ == Direction::kForward ? t : trajectory_->duration() - t));
   }
   int left = pieces;
   for (int i = 0; i < cells && end_ < first_ + kCells; ++i) {
@@ -123,6 +129,18 @@ bool Lookahead::ranges(double from, double to,
   return true;
 }
 
+/// From a piece's index to its place on the way, and back.
+std::size_t Lookahead::index_of(std::size_t piece) const noexcept VIAPOINT_NONBLOCKING {
+  return direction_ == Direction::kForward ? piece : trajectory_->pieces().size() - 1 - piece;
+}
+
+double Lookahead::start_of(std::size_t piece) const noexcept VIAPOINT_NONBLOCKING {
+  const std::size_t index = index_of(piece);
+  const double start = trajectory_->start_of(index);
+  if (direction_ == Direction::kForward) return start;
+  return trajectory_->duration() - (start + trajectory_->pieces()[index].duration);
+}
+
 void Lookahead::begin_cell() noexcept VIAPOINT_NONBLOCKING {
   DerivativeRanges& cell = cells_[static_cast<std::size_t>(end_ % kCells)];
   constexpr Range kNowhere{1e300, -1e300};
@@ -140,10 +158,15 @@ bool Lookahead::end_cell(int& pieces) noexcept VIAPOINT_NONBLOCKING {
   for (; piece_ < all.size(); ++piece_) {
     if (pieces == 0) return false;
     --pieces;
-    const double start = trajectory_->start_of(piece_);
-    const TrajectoryPiece& piece = all[piece_];
-    add_piece(piece, std::clamp(from - start, 0.0, piece.duration),
-              std::clamp(to - start, 0.0, piece.duration), cell);
+    const double start = start_of(piece_);
+    const TrajectoryPiece& piece = all[index_of(piece_)];
+    const double begin = std::clamp(from - start, 0.0, piece.duration);
+    const double end = std::clamp(to - start, 0.0, piece.duration);
+    if (direction_ == Direction::kForward) {
+      add_piece(piece, begin, end, cell);
+    } else {
+      add_piece(piece, piece.duration - end, piece.duration - begin, cell);
+    }
     if (start + piece.duration > to) break;
   }
   if (piece_ == all.size()) add_rest(cell);
@@ -166,9 +189,10 @@ void Lookahead::add_piece(const TrajectoryPiece& piece, double from, double to,
       const Range second =
           between(a.qdd[j], b.qdd[j], magnitude(third), half, limits_.acceleration[j]);
       const Range first = between(a.qd[j], b.qd[j], magnitude(second), half, limits_.velocity[j]);
-      cell.first.include(j, first);
+      const bool forward = direction_ == Direction::kForward;
+      cell.first.include(j, forward ? first : mirrored(first));
       cell.second.include(j, second);
-      cell.third.include(j, third);
+      cell.third.include(j, forward ? third : mirrored(third));
     }
   }
 }

@@ -22,6 +22,8 @@ const char* to_string(RunState state) {
       return "fault";
     case RunState::kJogging:
       return "jogging";
+    case RunState::kReturning:
+      return "returning";
   }
   return "unknown";
 }

@@ -33,6 +33,10 @@ Shares worst_shares(const Motion& motion, std::span<const LogRecord> log, double
     // before the cycle does.
     if (log[k].nominal_time == 0.0 && log[k].rate != log[k + 1].rate) continue;
     if (log[k + 1].nominal_time >= motion.trajectory.duration()) continue;
+    // So it does where a step, or the way back, ends at a point at which the path rests.
+    const JointState end = motion.trajectory.at(log[k + 1].nominal_time);
+    const bool may_end = log[k + 1].rate == 0.0 || log[k + 1].nominal_time == 0.0;
+    if (may_end && end.qd.norm() < 1e-9 && end.qdd.norm() < 1e-9) continue;
     const Cubic c = between(log[k], log[k + 1], cycle);
     for (int s = 0; s < samples; ++s) {
       const double t = cycle * (s + 0.5) / samples;

@@ -12,13 +12,21 @@
 #include "viapoint/realtime/jog.hpp"
 #include "viapoint/realtime/lookahead.hpp"
 #include "viapoint/realtime/motion_log.hpp"
+#include "viapoint/realtime/path_return.hpp"
 #include "viapoint/realtime/rate_governor.hpp"
 #include "viapoint/trajectory/trajectory.hpp"
 
 namespace viapoint {
 
-/// What the operator wants of the motion under way. A stop is final for its motion.
-enum class Wish : std::uint8_t { kRun, kPause, kStop };
+/// What the operator wants of the motion under way.
+enum class Wish : std::uint8_t {
+  kRun,
+  kPause,
+  kStop,     ///< category 2: to rest on the path, for good
+  kRelease,  ///< category 1: the same, and then the drive is released
+  kStep,     ///< to the end of the move under way, then kPause
+  kBackward  ///< back along the path, to the motion's start at most
+};
 
 /// Runs one motion after another, each from rest to rest, and holds position or jogs between them.
 ///
@@ -27,6 +35,16 @@ enum class Wish : std::uint8_t { kRun, kPause, kStop };
 /// nominal time runs (RateGovernor): the geometry never changes, and every joint keeps its limits
 /// through each change. A wait is a piece of constant position and runs at the rate like the rest;
 /// outputs change with the first setpoint of the piece that carries them.
+///
+/// Backward it is the mirrored motion that runs, by the same law: it turns at rest, and rests at
+/// the motion's start. Outputs are held meanwhile, and on the way forward again until the farthest
+/// piece that was reached, so that none is ever switched twice.
+///
+/// A step ends with the move under way: exactly there and at rest where the path rests between the
+/// moves, and where it does not, at rest as soon after it as can be.
+///
+/// While paused the arm may be jogged away. To go on it first returns, in a straight line in joint
+/// space (PathReturn), to where it left the path.
 ///
 /// Real-time: all but the constructor is safe; a cycle costs O(joints) whatever the motion's length
 /// and however many pieces it passes over (but for the binary search for the piece under way).
@@ -42,11 +60,12 @@ class Interpolator {
   void begin(const Trajectory& motion) noexcept VIAPOINT_NONBLOCKING;
   /// Share of the planned speed, clamped to [0, 1]; 0 acts as a pause. Kept between motions.
   void set_override(double share) noexcept VIAPOINT_NONBLOCKING;
+  /// A stop is final for its motion; each kStep is one step more.
   void wish(Wish wish) noexcept VIAPOINT_NONBLOCKING;
 
   /// Jogs at these joint velocities (n,) [rad/s or m/s] until kJogLease is over, from rest or on
   /// from the jog under way; zero comes to rest at once. Override does not act on it. Ignored while
-  /// a motion is active and after a fault.
+  /// a motion is active, unless it rests after a wish to pause, and after a fault.
   void jog(const JointVector& velocity) noexcept VIAPOINT_NONBLOCKING;
   /// True until a jog has come to rest.
   [[nodiscard]] bool jogging() const noexcept { return jog_.active(); }
@@ -60,8 +79,8 @@ class Interpolator {
 
   /// One cycle: fills in the setpoint due now and moves on. Returns the state it belongs to:
   /// kFinished with the end point, kStopped with the first setpoint at rest after a stop. Jogging
-  /// it returns kJogging, and kIdle with the first setpoint at rest. Without either it holds the
-  /// position and returns the last state again.
+  /// it returns kJogging, and kIdle or kPaused with the first setpoint at rest. Without either it
+  /// holds the position and returns the last state again.
   RunState tick(Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKING;
 
   /// Fills in of `record` what the last tick, which gave `setpoint`, decided: all but the cycle,
@@ -70,7 +89,8 @@ class Interpolator {
 
   /// True from begin() until a tick has returned kFinished or kStopped.
   [[nodiscard]] bool active() const noexcept { return motion_ != nullptr; }
-  /// Of the last setpoint: nominal time [s], rate dτ/dt, program step (-1 before the first motion).
+  /// Of the last setpoint: nominal time [s], rate dτ/dt (negative backward), program step (-1
+  /// before the first motion).
   [[nodiscard]] double nominal_time() const noexcept { return shown_.tau; }
   [[nodiscard]] double rate() const noexcept { return shown_.rate; }
   [[nodiscard]] int move() const noexcept { return move_; }
@@ -83,19 +103,38 @@ class Interpolator {
   static constexpr int kPiecesACycle = 256;
 
  private:
+  [[nodiscard]] bool is_stop() const noexcept;
+  [[nodiscard]] bool wants_motion() const noexcept;
   [[nodiscard]] double target() const noexcept;
+  [[nodiscard]] double nominal(double way) const noexcept;
   [[nodiscard]] RunState classify() const noexcept;
+  void hold(Setpoint& setpoint) const noexcept VIAPOINT_NONBLOCKING;
+  RunState tick_jog(Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKING;
+  RunState tick_return(Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKING;
+  RunState tick_motion(Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKING;
+  void turn_where_wanted() noexcept VIAPOINT_NONBLOCKING;
+  void rest_at(double way) noexcept VIAPOINT_NONBLOCKING;
+  void end_step(std::size_t piece) noexcept VIAPOINT_NONBLOCKING;
+  [[nodiscard]] bool rests_at_start_of(std::size_t piece) const noexcept VIAPOINT_NONBLOCKING;
   void enter_piece(std::size_t piece) noexcept VIAPOINT_NONBLOCKING;
   void evaluate(double curvature, Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKING;
   void move_on() noexcept VIAPOINT_NONBLOCKING;
 
+  static constexpr int kNoMove = -1;
+
+  JointLimits limits_;
   double cycle_;
   RateGovernor governor_;
   Jog jog_;
   int jog_cycles_;  ///< that a wish counts for
   Lookahead lookahead_;
+  PathReturn return_;
+  bool off_path_ = false;  ///< jogged away while paused, or on the way back
   const Trajectory* motion_ = nullptr;
   std::size_t piece_ = 0;
+  std::size_t farthest_piece_ = 0;
+  Direction direction_ = Direction::kForward;
+  /// Along the way in `direction_`: backward, τ since the motion's end, and rates count positive.
   RateState now_;
   /// At a constant rate τ is anchor + n cycle ρ: a product, so that nothing adds up.
   double anchor_ = 0.0;
@@ -103,8 +142,9 @@ class Interpolator {
 
   double override_ = 1.0;
   Wish wish_ = Wish::kRun;
+  int step_move_ = kNoMove;  ///< that the step is to end with
   RunState run_state_ = RunState::kIdle;
-  RateState shown_;
+  RateState shown_;  ///< by nominal time
   int move_ = -1;
   int looked_at_ = 0;
   std::uint64_t cycles_ = 0;

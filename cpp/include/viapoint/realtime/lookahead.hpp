@@ -60,6 +60,9 @@ struct DerivativeRanges {
   JointRanges first, second, third;
 };
 
+/// Which way along a motion.
+enum class Direction : std::uint8_t { kForward, kBackward };
+
 /// A window of cells, equally wide in nominal time, that slides along a trajectory. Each cell holds
 /// the ranges of the derivatives in it; every cell is computed once, a few a cycle, so that a
 /// question about the future costs no polynomial at all.
@@ -74,9 +77,11 @@ class Lookahead {
   /// @param cell width of a cell [s of nominal time]. Allocates. @pre limits valid, cell > 0
   Lookahead(const JointLimits& limits, double cell);
 
-  /// Starts anew at the beginning of `trajectory`, which must outlive its use here.
-  /// Real-time: safe.
-  void begin(const Trajectory& trajectory) noexcept VIAPOINT_NONBLOCKING;
+  /// Starts anew with `trajectory`, which must outlive its use here. Backward it is the motion that
+  /// runs from the end to the beginning: times are those since the end then, and the first and the
+  /// third derivative change their sign. Real-time: safe.
+  void begin(const Trajectory& trajectory,
+             Direction direction = Direction::kForward) noexcept VIAPOINT_NONBLOCKING;
   /// Forgets what lies before τ [s] and computes at most `cells` new cells, looking at no more than
   /// `pieces` pieces: a cell that has more is gone on with by the next call, and unknown until
   /// then. Returns the number of pieces looked at. Real-time: safe.
@@ -91,6 +96,8 @@ class Lookahead {
   static constexpr int kCells = 256;
 
  private:
+  [[nodiscard]] std::size_t index_of(std::size_t piece) const noexcept VIAPOINT_NONBLOCKING;
+  [[nodiscard]] double start_of(std::size_t piece) const noexcept VIAPOINT_NONBLOCKING;
   void begin_cell() noexcept VIAPOINT_NONBLOCKING;
   [[nodiscard]] bool end_cell(int& pieces) noexcept VIAPOINT_NONBLOCKING;
   void add_piece(const TrajectoryPiece& piece, double from, double to,
@@ -102,7 +109,8 @@ class Lookahead {
   JointLimits limits_;
   double width_;
   const Trajectory* trajectory_ = nullptr;
-  std::size_t piece_ = 0;                ///< next to look at
+  Direction direction_ = Direction::kForward;
+  std::size_t piece_ = 0;                ///< next to look at, counted along the way
   bool begun_ = false;                   ///< cell `end_` holds some of its pieces
   std::int64_t first_ = 0;               ///< first cell still held
   std::int64_t end_ = 0;                 ///< first cell not computed yet

@@ -18,7 +18,8 @@ enum class RunState : std::uint8_t {
   kStopped,  ///< came to rest on the path before its end
   kFinished,
   kFault,
-  kJogging,  ///< follows wished velocities, or comes to rest after them
+  kJogging,    ///< follows wished velocities, or comes to rest after them
+  kReturning,  ///< on its way back to where a jog left the path
 };
 
 [[nodiscard]] const char* to_string(RunState state);
@@ -30,7 +31,7 @@ struct LogRecord {
   std::int64_t latency = 0;   ///< wake-up after its due instant [ns]
   std::int64_t compute = 0;   ///< the tick's own computing time [ns]
   double nominal_time = 0.0;  ///< τ along the motion [s]
-  double rate = 0.0;          ///< dτ/dt
+  double rate = 0.0;          ///< dτ/dt, negative backward
   std::int32_t move = -1;     ///< program step under way
   RunState state = RunState::kIdle;
   std::uint64_t outputs = 0;
