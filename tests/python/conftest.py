@@ -39,3 +39,25 @@ def abc(golden: dict[str, Any]) -> dict[str, np.ndarray]:
 def short(puma: vp.Robot, abc: dict[str, np.ndarray]) -> vp.Program:
     """A joint move of about 0.3 s from A."""
     return vp.Program(puma, start=abc["A"], name="short").movej(abc["A"] + 0.2)
+
+
+@pytest.fixture(scope="session")
+def everything() -> vp.Motion:
+    """Joint and tool moves, every kind of zone, a speed, outputs and a wait, planned."""
+    robot = vp.load_robot("ur5e")
+    q = np.radians([[30, -90, 90, -90, -90, 0], [30, -80, 120, -120, -90, 0]])
+    program = vp.Program(
+        robot, start=np.radians([0, -90, 90, -90, -90, 0]), scale=0.5, zone=0.02, name="everything"
+    )
+    program.movej(q[0]).set_do(3, True).movej(q[1])
+    pose = robot.fk(q[1])
+
+    def moved(x: float, y: float, z: float) -> np.ndarray:
+        there = pose.copy()
+        there[:3, 3] += (x, y, z)
+        return there
+
+    program.movel(moved(-0.06, 0.05, 0), speed=0.2, zone=vp.deviation(0.003))
+    program.movel(moved(-0.06, 0.05, -0.05), zone="fine")
+    program.movec(moved(-0.11, 0, -0.05), moved(-0.06, -0.05, -0.05), zone=vp.joint_deviation(0.02))
+    return program.movel(moved(-0.06, 0.05, 0)).wait(0.1).plan()

@@ -8,7 +8,7 @@ from ._balls import Array
 from ._chain import Chain, cross_matrix
 from ._file_parts import KINDS
 from ._findings import Finding, Verdict
-from ._joint_checks import rate_at
+from ._joint_checks import rates_at
 from ._motion_file import MotionFile
 from ._zone_checks import points_at
 
@@ -43,14 +43,14 @@ def check_claims(motion: MotionFile, verdict: Verdict) -> None:
 
 def _check_rules(motion: MotionFile, verdict: Verdict) -> None:
     end = 0.0
-    for k, rule in enumerate(motion.certificate["rules"]):
+    rules = motion.certificate["rules"]
+    middles = np.array([0.5 * (rule["from"] + rule["to"]) for rule in rules])
+    of_kind = [rates_at(motion, middles, i + 1) for i in range(len(KINDS))]
+    all_shares = np.stack(of_kind, axis=1) / motion.limits.rates
+    for k, (rule, shares) in enumerate(zip(rules, all_shares, strict=True)):
         if abs(rule["from"] - end) > SAME_TIME * max(end, 1.0):
             verdict.findings.append(Finding(f"rule {k} does not begin where the one before ends"))
         end = float(rule["to"])
-        middle = 0.5 * (rule["from"] + rule["to"])
-        shares = np.stack(
-            [rate_at(motion, middle, i + 1) / motion.limits.rates[i] for i in range(len(KINDS))]
-        )
         there = float(shares.max())
         if rule["kind"] in KINDS:
             there = float(shares[KINDS.index(rule["kind"]), rule["joint"]])
@@ -58,7 +58,7 @@ def _check_rules(motion: MotionFile, verdict: Verdict) -> None:
             verdict.findings.append(
                 Finding(
                     f"rule {k} claims another share of the {rule['kind']} limit",
-                    time=middle,
+                    time=float(middles[k]),
                     joint=rule.get("joint"),
                     value=rule["share"],
                     limit=there,

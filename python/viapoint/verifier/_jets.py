@@ -100,20 +100,21 @@ def product(a: Ball, b: Ball) -> Ball:
 def sine_cosine_jets(angle: Ball) -> tuple[Ball, Ball]:
     """Sine and cosine of jets: s' = c a', c' = -s a', coefficient by coefficient."""
     sines, cosines = sine_cosine(angle[0])
-    s = [sines]
-    c = [cosines]
+    mid = np.zeros((2, *angle.mid.shape))
+    rad = np.zeros_like(mid)
+    mid[:, 0], rad[:, 0] = (sines.mid, cosines.mid), (sines.rad, cosines.rad)
+    slope = np.arange(ORDER + 1.0).reshape(-1, *[1] * (angle.mid.ndim - 1))
     for k in range(1, ORDER + 1):
-        ds, dc = Ball.exact(np.zeros(1)), Ball.exact(np.zeros(1))
-        for j in range(1, k + 1):
-            slope = angle[j].scaled(j / k)
-            ds = ds + slope * c[k - j]
-            dc = dc - slope * s[k - j]
-        s.append(ds)
-        c.append(dc)
-    return (
-        Ball(np.stack([b.mid for b in s]), np.stack([b.rad for b in s])),
-        Ball(np.stack([b.mid for b in c]), np.stack([b.rad for b in c])),
-    )
+        # Σ_j (j / k) a_j times the other function's coefficient k - j, j from 1 to k.
+        a = slope[1 : k + 1] * angle.mid[1 : k + 1] / k
+        wide = slope[1 : k + 1] * angle.rad[1 : k + 1] / k
+        other, blur = mid[::-1, :k][:, ::-1], rad[::-1, :k][:, ::-1]
+        size = np.abs(other)
+        mid[:, k] = np.sum(a * other, axis=1)
+        mid[1, k] *= -1.0
+        spread = np.abs(a) * (blur + ROUNDING * size) + wide * (size + blur)
+        rad[:, k] = np.sum(spread, axis=1) * WIDER + TINY
+    return Ball(mid[0], rad[0]), Ball(mid[1], rad[1])
 
 
 def linear(matrix: Array, vectors: Ball) -> Ball:
