@@ -1,4 +1,4 @@
-"""The command ``viapoint``: run, check, plot or export a script; list the robots."""
+"""The command ``viapoint``: run, check, plot, export or verify a script; list the robots."""
 
 from __future__ import annotations
 
@@ -37,6 +37,7 @@ from ._recorder import ProgressRecorder, Recorder
 from ._report import Report
 from ._robot import Robot, load_robot
 from ._robot_check import findings, joint_table, remarks
+from ._verification import finding_lines, is_motion_file, verdict_on, verdict_table
 from .errors import BadArgumentError, FileError, MotionError
 
 app = typer.Typer(
@@ -114,7 +115,14 @@ def plot(script: Script, out: Folder = Path("out"), robot: RobotFile = None) -> 
 
 
 @app.command()
-def export(script: Script, out: Folder = Path("out"), robot: RobotFile = None) -> None:
+def export(
+    script: Script,
+    out: Folder = Path("out"),
+    robot: RobotFile = None,
+    motions: Annotated[
+        bool, typer.Option("--motions", help="Write the planned motions, too, for verify")
+    ] = False,
+) -> None:
     """Write the programs of a script as files for viapoint-controller."""
     recorder = Recorder(virtual=True)
     with _reported(recorder):
@@ -128,8 +136,51 @@ def export(script: Script, out: Folder = Path("out"), robot: RobotFile = None) -
             path = out / f"{file_stem(script, motion, taken)}.json"
             motion.program.save(path)
             written.append(path)
+            if motions:
+                written.append(path.with_suffix(".motion.json"))
+                motion.save(written[-1])
         written += _save_own_robots(recorder.chosen, out)
         _say_files(written)
+
+
+@app.command()
+def verify(
+    file: Annotated[
+        Path, typer.Argument(metavar="FILE", help="A motion file, or a script or program file")
+    ],
+    robot: RobotFile = None,
+) -> None:
+    """Prove from its file alone that a motion keeps every limit and its path.
+
+    What verifies shares no code with what planned, only the format of the file. A script is
+    planned first, and its motions are written aside and verified. The exit code is 1 where
+    anything is wrong.
+    """
+    recorder = Recorder(virtual=True)
+    with _reported(recorder):
+        if is_motion_file(file):
+            holds = _say_verdict(file)
+        else:
+            _execute(file, recorder, robot)
+            holds = True
+            with tempfile.TemporaryDirectory() as folder:
+                for i, motion in enumerate(recorder.chosen):
+                    path = Path(folder) / f"{i}.motion.json"
+                    motion.save(path)
+                    holds &= _say_verdict(path)
+            if not recorder.chosen:
+                console.print("The script planned nothing.")
+    if not holds:
+        raise typer.Exit(1)
+
+
+def _say_verdict(file: Path) -> bool:
+    """Print what was proven of a motion file; True where nothing is wrong."""
+    verdict = verdict_on(file)
+    console.print(verdict_table(verdict))
+    for line in finding_lines(verdict):
+        console.print(line, highlight=False, soft_wrap=not console.is_terminal)
+    return verdict.holds
 
 
 robots_app = typer.Typer(help="List the built-in robots; explain a description.")

@@ -1,5 +1,6 @@
-"""The command: run, check, plot, export, robots."""
+"""The command: run, check, plot, export, verify, robots."""
 
+import json
 import os
 import re
 import signal
@@ -14,7 +15,7 @@ import pytest
 from typer.testing import CliRunner
 
 import viapoint as vp
-from viapoint import cli
+from viapoint import cli, verifier
 
 SCRIPT = """
     import viapoint as vp
@@ -120,6 +121,37 @@ def test_export_writes_the_robot_that_a_script_has_made(tmp_path):
     robot = vp.load_robot(str(tmp_path / "out" / "puma560.yaml"))
     assert robot.limits.velocity.tolist() == [1.0] * 6
     assert vp.Program.load(tmp_path / "out" / "job_p.json", robot).plan().duration > 0.1
+
+
+def test_verify_proves_exported_motions_and_scripts(tmp_path):
+    script = write(tmp_path / "job.py", name="p", target=GOOD)
+    assert call("export", script, "-o", ".", "--motions").exit_code == 0
+    for file in ("job_p.motion.json", "job_p.json", script):
+        result = call("verify", file)
+        assert result.exit_code == 0, result.output
+        assert "holds" in result.output
+        assert "jerk, % of the limits" in result.output
+
+
+def test_verify_tells_what_is_wrong_by_its_exit_code_and_in_words(tmp_path):
+    script = write(tmp_path / "job.py", name="p", target=GOOD)
+    call("export", script, "-o", ".", "--motions")
+    file = tmp_path / "job_p.motion.json"
+    whole = file.read_bytes()
+    document = json.loads(whole)
+    del document["sha256"]
+    document["robot"]["limits"]["velocity"][0] *= 0.1
+    file.write_bytes(verifier.seal(json.dumps(document)[:-1]))
+    result = call("verify", str(file))
+    assert result.exit_code == 1
+    assert "the velocity limit is broken (piece" in result.output
+    assert "joint 1" in result.output
+    file.write_bytes(whole[:-100])
+    result = call("verify", str(file))
+    assert result.exit_code == 1
+    assert "bad_program" in result.stderr
+    assert "cut short" in result.stderr
+    assert call("verify", "none.motion.json").exit_code == 1
 
 
 def test_a_program_file_runs_like_a_script(tmp_path):

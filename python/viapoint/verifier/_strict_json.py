@@ -31,7 +31,9 @@ def load(data: bytes) -> dict[str, Any]:
     """
     seal = SEAL.search(data)
     if seal is None:
-        raise MotionFileError('it does not end in its seal, the key "sha256": is it cut short?')
+        raise MotionFileError(
+            'it is cut short, or never was sealed: it does not end in the key "sha256"'
+        )
     if sha256(data[: seal.start()]).hexdigest().encode() != seal[1]:
         raise MotionFileError("its content does not match its seal: a byte of it was changed")
     try:
