@@ -22,9 +22,10 @@ Orientation orientation_from(const std::string& name) {
   if (name == "fixed") return Orientation::kFixed;
   if (name == "tangent") return Orientation::kTangent;
   if (name == "through") return Orientation::kThrough;
+  if (name == "spin") return Orientation::kSpin;
   if (name == "free") return Orientation::kFree;
   throw MotionError(ErrorCode::kBadArgument, "\"" + name + "\" is no way of orientation.",
-                    {R"(Use "least", "wrist", "fixed", "tangent", "through" or "free".)"});
+                    {R"(Use "least", "wrist", "fixed", "tangent", "through", "spin" or "free".)"});
 }
 
 SplineKind spline_kind_from(const std::string& name) {

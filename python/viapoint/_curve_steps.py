@@ -13,12 +13,12 @@ from ._step_list import StepList
 from ._zone import ZoneLike
 from .errors import BadArgumentError
 
-ArcOrientation = Literal["least", "wrist", "fixed", "tangent", "through", "free"]
+ArcOrientation = Literal["least", "wrist", "fixed", "tangent", "through", "spin", "free"]
 SplineOrientation = ArcOrientation
 SplineKind = Literal["cubic", "quintic", "bezier", "b_spline"]
 
-_ORIENTATIONS = ("least", "wrist", "fixed", "tangent", "through", "free")
-_OF_TURNS = ("fixed", "tangent", "wrist", "free")
+_ORIENTATIONS = ("least", "wrist", "fixed", "tangent", "through", "spin", "free")
+_OF_TURNS = ("fixed", "tangent", "wrist", "spin", "free")
 
 
 class CurveSteps(StepList):
@@ -59,11 +59,12 @@ class CurveSteps(StepList):
             How far to turn about the axis [rad], positive by the right-hand rule; any size.
         pitch : float
             Travel along the axis for every positive turn [m]: a helix.
-        orientation : {"least", "wrist", "fixed", "tangent", "through", "free"}, optional
+        orientation : {"least", "wrist", "fixed", "tangent", "through", "spin", "free"}, optional
             The least rotation from start to end (default of an arc by `via`); wrist joints
             interpolated; as it is at the start (default about an axis); turning with the arc;
-            through the orientation of `via` as well; or only the position held. About an axis
-            there is no end pose, so "least" and "through" mean nothing.
+            through the orientation of `via` as well; the tool's z axis by the least turn, free to
+            spin about it; or only the position held. About an axis there is no end pose, so
+            "least" and "through" mean nothing.
         speed, acceleration : float, optional
             At the tool [m/s], [m/s²].
         scale : float, optional
@@ -180,11 +181,11 @@ class CurveSteps(StepList):
         space : {"tool", "joint"}, optional
             Whether the tool or the joints move on the spline. Default: the joints where all points
             are joints, else the tool.
-        orientation : {"through", "least", "wrist", "fixed", "tangent", "free"}, optional
+        orientation : {"through", "least", "wrist", "fixed", "tangent", "spin", "free"}, optional
             Of the tool: through that of every point (default), with continuous angular
             acceleration; by the least rotation from the first to the last; wrist joints
-            interpolated; as it is at the start; led along the curve; or left to the joints
-            (default for `positions`).
+            interpolated; as it is at the start; led along the curve; its z axis through that of
+            every point, free to spin about it; or left to the joints (default for `positions`).
         speed, acceleration : float, optional
             At the tool [m/s], [m/s²]; of no meaning in joint space.
         scale : float, optional

@@ -124,7 +124,7 @@ class Program(CurveSteps):
         target: ArrayLike | None = None,
         *,
         position: ArrayLike | None = None,
-        orientation: Literal["least", "wrist", "fixed"] = "least",
+        orientation: Literal["least", "wrist", "fixed", "spin"] = "least",
         speed: float | None = None,
         acceleration: float | None = None,
         scale: float | None = None,
@@ -138,9 +138,10 @@ class Program(CurveSteps):
             pose_base_tool [m], or the joints [rad or m] of that pose.
         position : array_like, (3,), optional
             Instead of `target`: the tool's position [m], with its orientation left free.
-        orientation : {"least", "wrist", "fixed"}
+        orientation : {"least", "wrist", "fixed", "spin"}
             The least rotation between the two poses; the wrist joints interpolated, with the
-            position straight; or the orientation as it is at the start.
+            position straight; the orientation as it is at the start; or the tool's z axis by the
+            least turn to the target's, while the tool may spin about it as the joints like.
         speed, acceleration : float, optional
             At the tool [m/s], [m/s²].
         scale : float, optional
@@ -154,7 +155,7 @@ class Program(CurveSteps):
             By the argument's name.
         """
         options = self._options(speed=speed, acceleration=acceleration, scale=scale, zone=zone)
-        way = choice(orientation, "orientation", ("least", "wrist", "fixed"))
+        way = choice(orientation, "orientation", ("least", "wrist", "fixed", "spin"))
         file, line = caller()
         self._core.add_movel(self._target(target, position), way, options, file, line)
         return self

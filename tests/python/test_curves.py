@@ -112,6 +112,26 @@ def test_positions_leave_the_orientation_free():
     np.testing.assert_allclose(places(motion)[-1], np.add(at, [0.1, 0.0, 0.05]), atol=1e-6)
 
 
+def test_a_spinning_tool_keeps_its_axis_and_spares_the_last_joint(program, here):
+    target = moved(here, 0.02, 0.06)
+    spun = target.copy()
+    spun[:3, :2] = target[:3, 1::-1] * [1, -1]  # a quarter turn about z
+    motion = (
+        program.movel(spun, orientation="spin")
+        .movec(
+            center=target[:3, 3] + [0.02, 0, 0],
+            axis=[0, 0, 1],
+            angle=360 * deg,
+            orientation="spin",
+        )
+        .plan()
+    )
+    s = motion.sample(0.002)
+    np.testing.assert_allclose(s.pose[-1, :3, 2], target[:3, 2], atol=1e-6)
+    np.testing.assert_allclose(s.pose[-1, :3, 3], target[:3, 3], atol=1e-6)
+    assert np.ptp(s.q[:, 5]) < 1e-6
+
+
 def test_points_on_one_line_are_refused_with_the_way_out(program, here):
     program.movec(moved(here, 0.02), moved(here, 0.04))
     with pytest.raises(errors.DegenerateCurveError, match="one straight line") as caught:

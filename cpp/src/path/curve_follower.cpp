@@ -28,6 +28,12 @@ int coordinates_of(Hold hold) {
   return hold == Hold::kAxis ? kAxisCoordinates : 3;
 }
 
+/// The tool's x and y axes.
+using AcrossAxis = Eigen::Matrix<double, 3, 2>;
+AcrossAxis across_axis(const ChainFrames& frames) {
+  return frames.pose_base_tool.linear().leftCols<2>();
+}
+
 /// The rotation vector that brings one direction to the other by the least turn; of opposite ones,
 /// about any axis across.
 Eigen::Vector3d least_turn(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
@@ -71,34 +77,36 @@ Twist CurveFollower::miss(double s, const Pose& pose) const {
   return miss;
 }
 
-CurveFollower::Rows CurveFollower::held(const Eigen::Matrix3d& turned, const Twist& twist) const {
+CurveFollower::Rows CurveFollower::held(const ChainFrames& frames, const Twist& twist) const {
   Rows rows = twist.head(coordinates_);
   rows.head<3>() /= reach_;
   if (coordinates_ == kAxisCoordinates) {
-    rows.tail<2>() = turned.leftCols<2>().transpose() * twist.tail<3>();
+    rows.tail<2>() = across_axis(frames).transpose() * twist.tail<3>();
   }
   return rows;
 }
 
-CurveFollower::Block CurveFollower::held(const Eigen::Matrix3d& turned,
+CurveFollower::Block CurveFollower::held(const ChainFrames& frames,
                                          const Jacobian& jacobian) const {
   Block block = jacobian.topLeftCorner(coordinates_, free_joints_);
   block.topRows<3>() /= reach_;
   if (coordinates_ == kAxisCoordinates) {
     block.bottomRows<2>() =
-        turned.leftCols<2>().transpose() * jacobian.bottomRows<3>().leftCols(free_joints_);
+        across_axis(frames).transpose() * jacobian.bottomRows<3>().leftCols(free_joints_);
   }
   return block;
 }
 
-CurveFollower::Block CurveFollower::held_rate(const CurvePoint& wanted, const Jacobian& jacobian,
-                                              const Jacobian& jacobian_rate) const {
-  Block block = held(wanted.rotation, jacobian_rate);
+CurveFollower::Block CurveFollower::held_rate(const ChainFrames& frames, const Jacobian& jacobian,
+                                              const Jacobian& jacobian_rate,
+                                              const Eigen::Vector3d& w) const {
+  Block block = held(frames, jacobian_rate);
   if (coordinates_ == kAxisCoordinates) {
-    Eigen::Matrix<double, 3, 2> axes_rate;
-    axes_rate << wanted.w.cross(wanted.rotation.col(0)), wanted.w.cross(wanted.rotation.col(1));
+    const AcrossAxis across = across_axis(frames);
+    AcrossAxis across_rate;
+    across_rate << w.cross(across.col(0)), w.cross(across.col(1));
     block.bottomRows<2>() +=
-        axes_rate.transpose() * jacobian.bottomRows<3>().leftCols(free_joints_);
+        across_rate.transpose() * jacobian.bottomRows<3>().leftCols(free_joints_);
   }
   return block;
 }
@@ -108,25 +116,24 @@ void CurveFollower::place_wrist(double s, JointVector& q) const {
 }
 
 std::optional<CurveFollower::Knot> CurveFollower::solve(double s, const JointVector& guess) const {
-  const Eigen::Matrix3d turned = curve_.at(s).rotation;
   JointVector q = guess;
   place_wrist(s, q);
   const JointVector from = q;
   ChainFrames frames = arm_.frames(q);
   Twist error = miss(s, frames.pose_base_tool);
-  double size = held(turned, error).norm();
+  double size = held(frames, error).norm();
   for (int step = 0; step < kNewtonSteps && size > kConverged; ++step) {
     Eigen::CompleteOrthogonalDecomposition<Block> solver;
     solver.setThreshold(kRankThreshold);
-    solver.compute(held(turned, arm_.jacobian(frames)));
+    solver.compute(held(frames, arm_.jacobian(frames)));
     JointVector trial = q;
-    trial.head(free_joints_) += solver.solve(held(turned, error));
+    trial.head(free_joints_) += solver.solve(held(frames, error));
     if (!trial.allFinite() || (trial - from).lpNorm<Eigen::Infinity>() > kLargestCorrection) {
       return std::nullopt;
     }
     const ChainFrames trial_frames = arm_.frames(trial);
     const Twist trial_error = miss(s, trial_frames.pose_base_tool);
-    const double trial_size = held(turned, trial_error).norm();
+    const double trial_size = held(trial_frames, trial_error).norm();
     // Near a solution a step that no longer gains is rounding; far from one it is divergence, and
     // the test of the residual below tells.
     if (step > 2 && trial_size >= size) break;
@@ -137,7 +144,7 @@ std::optional<CurveFollower::Knot> CurveFollower::solve(double s, const JointVec
   }
   const Deviation residual = {error.head<3>().norm(), error.tail<3>().norm()};
   if (!(residual.position <= kKnotShare * options_.position_tolerance)) return std::nullopt;
-  if (coordinates_ == 6 && !(residual.angle <= kKnotShare * options_.angle_tolerance)) {
+  if (coordinates_ != 3 && !(residual.angle <= kKnotShare * options_.angle_tolerance)) {
     return std::nullopt;
   }
   return derivatives(s, q);
@@ -147,7 +154,7 @@ CurveFollower::Knot CurveFollower::derivatives(double s, const JointVector& q) c
   const ChainFrames frames = arm_.frames(q);
   const CurvePoint wanted = curve_.at(s);
   const Jacobian jacobian = arm_.jacobian(frames);
-  const Block block = held(wanted.rotation, jacobian);
+  const Block block = held(frames, jacobian);
   Eigen::CompleteOrthogonalDecomposition<Block> solver;
   solver.setThreshold(kRankThreshold);
   solver.compute(block);
@@ -159,8 +166,8 @@ CurveFollower::Knot CurveFollower::derivatives(double s, const JointVector& q) c
   knot.point.q1 = wrist_rate_;
   Twist rate;
   rate << wanted.p1, wanted.w;
-  const Rows wanted_rate = held(wanted.rotation, rate);
-  const Rows by_free = held(wanted.rotation, Twist(rate - jacobian * wrist_rate_));
+  const Rows wanted_rate = held(frames, rate);
+  const Rows by_free = held(frames, Twist(rate - jacobian * wrist_rate_));
   knot.point.q1.head(free_joints_) = solver.solve(by_free);
   const double rate_size = wanted_rate.norm();
   const Rows rate_miss = block * knot.point.q1.head(free_joints_) - by_free;
@@ -170,13 +177,11 @@ CurveFollower::Knot CurveFollower::derivatives(double s, const JointVector& q) c
   Twist rate_change;
   rate_change << wanted.p2, wanted.w1;
   rate_change -= jacobian_rate * knot.point.q1;
-  if (coordinates_ == kAxisCoordinates) {
-    // From (Eᵀ(ω − ω_c))' = 0, where ω is the tool's rate and ω_c the curve's.
-    const Eigen::Vector3d tool_rate = (jacobian * knot.point.q1).tail<3>();
-    rate_change.tail<3>() -= tool_rate.cross(wanted.w);
-  }
+  // From (Eᵀ(ω − ω_c))' = 0, where ω is the tool's rate and ω_c the curve's.
+  const Eigen::Vector3d tool_rate = (jacobian * knot.point.q1).tail<3>();
+  if (coordinates_ == kAxisCoordinates) rate_change.tail<3>() -= tool_rate.cross(wanted.w);
   knot.point.q2 = JointVector::Zero(arm_.joints());
-  knot.point.q2.head(free_joints_) = solver.solve(held(wanted.rotation, rate_change));
+  knot.point.q2.head(free_joints_) = solver.solve(held(frames, rate_change));
   if (free_joints_ > coordinates_) {
     // The derivative of least norm lacks what turns the row space of J: (I − J⁺J) J'ᵀλ.
     const BlockTransposed transposed = block.transpose();
@@ -185,7 +190,8 @@ CurveFollower::Knot CurveFollower::derivatives(double s, const JointVector& q) c
     dual.compute(transposed);
     const JointVector q1_free = knot.point.q1.head(free_joints_);
     const Rows lambda = dual.solve(q1_free);
-    const JointVector turn = held_rate(wanted, jacobian, jacobian_rate).transpose() * lambda;
+    const JointVector turn =
+        held_rate(frames, jacobian, jacobian_rate, tool_rate).transpose() * lambda;
     const Rows seen = block * turn;
     knot.point.q2.head(free_joints_) += turn - solver.solve(seen);
   }
@@ -195,20 +201,19 @@ CurveFollower::Knot CurveFollower::derivatives(double s, const JointVector& q) c
 
 Twist CurveFollower::nearest_miss(double s, JointVector guess) const {
   place_wrist(s, guess);
-  const Eigen::Matrix3d turned = curve_.at(s).rotation;
   double damping = 1e-3;
   ChainFrames frames = arm_.frames(guess);
   Twist error = miss(s, frames.pose_base_tool);
-  for (int step = 0; step < kDampedSteps && held(turned, error).norm() > 1e-12; ++step) {
-    const Block block = held(turned, arm_.jacobian(frames));
+  for (int step = 0; step < kDampedSteps && held(frames, error).norm() > 1e-12; ++step) {
+    const Block block = held(frames, arm_.jacobian(frames));
     JointMatrix normal = block.transpose() * block;
     normal.diagonal().array() += damping;
-    const JointVector right = block.transpose() * held(turned, error);
+    const JointVector right = block.transpose() * held(frames, error);
     JointVector trial = guess;
     trial.head(free_joints_) += normal.ldlt().solve(right);
     const ChainFrames trial_frames = arm_.frames(trial);
     const Twist trial_error = miss(s, trial_frames.pose_base_tool);
-    if (held(turned, trial_error).norm() < held(turned, error).norm()) {
+    if (held(trial_frames, trial_error).norm() < held(frames, error).norm()) {
       guess = trial;
       frames = trial_frames;
       error = trial_error;
@@ -223,7 +228,7 @@ Twist CurveFollower::nearest_miss(double s, JointVector guess) const {
 
 Eigen::VectorXd CurveFollower::singular_values(const JointVector& q) const {
   const ChainFrames frames = arm_.frames(q);
-  const Eigen::MatrixXd block = held(frames.pose_base_tool.linear(), arm_.jacobian(frames));
+  const Eigen::MatrixXd block = held(frames, arm_.jacobian(frames));
   return Eigen::JacobiSVD<Eigen::MatrixXd>(block).singularValues();
 }
 

@@ -12,8 +12,8 @@ namespace viapoint {
 
 /// Solves, for the coordinates that are held (x = tool position, and rotation for Hold::kPose),
 ///   J q' = x',   J q'' = x'' − J' q'.
-/// For Hold::kAxis the two angular rates across the tool's z axis count, Eᵀω with E the x and y
-/// axes of the curve's frame; these turn with it, E' = ω_c × E.
+/// For Hold::kAxis the two angular rates across the tool's z axis count, Eᵀω with E its x and y
+/// axes, which turn with it: E' = ω × E.
 /// With more joints than coordinates the least-norm rate is followed, q' = Jᵀλ, and its own exact
 /// derivative, q'' = Jᵀλ' + J'ᵀλ, is taken. With fewer, the least-squares solution, whose residual
 /// is kept. Rotation rows count in radians, position rows in shares of the arm's reach.
@@ -56,12 +56,12 @@ class CurveFollower {
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 6, 1>;
 
   [[nodiscard]] Twist miss(double s, const Pose& pose) const;
-  /// The rows that are held while the curve's frame is turned so.
-  [[nodiscard]] Rows held(const Eigen::Matrix3d& turned, const Twist& twist) const;
-  [[nodiscard]] Block held(const Eigen::Matrix3d& turned, const Jacobian& jacobian) const;
-  /// The derivative by s of the held rows of J.
-  [[nodiscard]] Block held_rate(const CurvePoint& wanted, const Jacobian& jacobian,
-                                const Jacobian& jacobian_rate) const;
+  /// The rows that are held.
+  [[nodiscard]] Rows held(const ChainFrames& frames, const Twist& twist) const;
+  [[nodiscard]] Block held(const ChainFrames& frames, const Jacobian& jacobian) const;
+  /// The derivative by s of the held rows of J. @param w the tool's angular rate
+  [[nodiscard]] Block held_rate(const ChainFrames& frames, const Jacobian& jacobian,
+                                const Jacobian& jacobian_rate, const Eigen::Vector3d& w) const;
   /// The joints that do not follow the curve, put where they belong at s.
   void place_wrist(double s, JointVector& q) const;
 

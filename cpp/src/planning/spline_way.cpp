@@ -113,6 +113,11 @@ void refuse_cusp(const JointPath& path) {
   throw MotionError(std::move(problem));
 }
 
+/// Whether the curve passes the orientation of every point, or its tool axis.
+bool passes_orientations(const SplineMove& move, Hold hold) {
+  return hold == Hold::kAxis || (hold == Hold::kPose && move.orientation == Orientation::kThrough);
+}
+
 /// The poses of start and points, and that every one has an orientation where it counts.
 std::vector<Pose> poses_of(const SplineMove& move, const RobotModel& robot,
                            const JointVector& start) {
@@ -122,14 +127,22 @@ std::vector<Pose> poses_of(const SplineMove& move, const RobotModel& robot,
   };
   const auto positions = std::count_if(move.points.begin(), move.points.end(), is_position);
   const auto all = static_cast<std::ptrdiff_t>(move.points.size());
-  if (move.orientation == Orientation::kThrough && positions > 0 && positions < all) {
+  const bool oriented =
+      move.orientation == Orientation::kThrough || move.orientation == Orientation::kSpin;
+  if (oriented && positions > 0 && positions < all) {
     const auto first = std::find_if(move.points.begin(), move.points.end(), is_position);
     refuse(ErrorCode::kBadArgument,
            name_of(static_cast<size_t>(first - move.points.begin()) + 1) +
-               " is a position, and orientation=\"through\" needs poses",
+               " is a position, and others are poses: this orientation needs all of one kind",
            {"give every point as a pose", "orientation=\"least\", \"fixed\", \"tangent\""});
   }
   for (const Target& target : move.points) poses.push_back(pose_of(robot, target, start));
+  if (move.orientation == Orientation::kSpin) {
+    // However the points are spun about the tool, the axis turns the least from each to the next.
+    for (size_t k = 1; k < poses.size(); ++k) {
+      poses[k].linear() = least_turned_axis(poses[k - 1].linear(), poses[k].linear());
+    }
+  }
   return poses;
 }
 
@@ -139,9 +152,11 @@ void require_at_start(const SplineMove& move, const RobotModel& robot,
   const Pose here = robot.forward().pose(start);
   const Pose wanted = pose_of(robot, *move.start, start);
   const double off = (here.translation() - wanted.translation()).norm();
-  const double turned = rotation_distance(here.linear(), wanted.linear());
-  const bool oriented = hold_of(move.orientation, *move.start) == Hold::kPose &&
-                        move.orientation == Orientation::kThrough;
+  const Hold hold = hold_of(move.orientation, *move.start);
+  const double turned = rotation_distance(
+      here.linear(),
+      hold == Hold::kAxis ? least_turned_axis(here.linear(), wanted.linear()) : wanted.linear());
+  const bool oriented = passes_orientations(move, hold);
   if (off <= tolerance.position && (!oriented || turned <= tolerance.angle)) return;
   char text[200];
   std::snprintf(
@@ -168,7 +183,7 @@ std::unique_ptr<const OrientationCurve> orientation_of(const SplineMove& move, H
   if (hold == Hold::kPose && move.orientation == Orientation::kTangent) {
     return std::make_unique<OrientationSpline>(follow_tangent(position, from, kTangentTolerance));
   }
-  if (hold == Hold::kPose && move.orientation == Orientation::kThrough) {
+  if (passes_orientations(move, hold)) {
     std::vector<Eigen::Matrix3d> rotations;
     for (const Pose& pose : poses) rotations.emplace_back(pose.linear());
     return std::make_unique<OrientationSpline>(OrientationSpline::through(rotations, at));
@@ -215,7 +230,7 @@ ToolWay way_of(const SplineMove& move, const RobotModel& robot, const LineTolera
   way.joints_count = move.orientation == Orientation::kLeast ||
                      move.orientation == Orientation::kThrough ||
                      move.orientation == Orientation::kWrist;
-  const bool oriented = way.hold == Hold::kPose && move.orientation == Orientation::kThrough;
+  const bool oriented = passes_orientations(move, way.hold);
   std::vector<double> distances;
   std::vector<JointVector> positions = {poses[0].translation()};
   double farthest = 0.0;

@@ -132,6 +132,7 @@ Pose pose_of(const RobotModel& robot, const Target& target, const JointVector& s
 Hold hold_of(Orientation orientation, const Target& goal) {
   if (orientation == Orientation::kWrist) return Hold::kWrist;
   if (orientation == Orientation::kFree) return Hold::kPosition;
+  if (orientation == Orientation::kSpin) return Hold::kAxis;
   const bool of_the_goal =
       orientation == Orientation::kLeast || orientation == Orientation::kThrough;
   return of_the_goal && std::holds_alternative<PositionTarget>(goal) ? Hold::kPosition
@@ -145,17 +146,26 @@ std::unique_ptr<const OrientationCurve> least_turn(const Eigen::Matrix3d& from,
   return std::make_unique<SteadyTurn>(SteadyTurn::between(from, to, length));
 }
 
+Eigen::Matrix3d least_turned_axis(const Eigen::Matrix3d& from, const Eigen::Matrix3d& to) {
+  constexpr double kOppositeSlack = 1e-9;
+  const Eigen::Vector3d across = from.col(2).cross(to.col(2));
+  if (from.col(2).dot(to.col(2)) < 0.0 && across.norm() <= kOppositeSlack) refuse_half_turn();
+  return Eigen::Quaterniond::FromTwoVectors(from.col(2), to.col(2)) * from;
+}
+
 ToolWay way_of(const LinMove& move, const RobotModel& robot, const JointVector& start) {
   require_kinematics(robot);
   const Pose from = robot.forward().pose(start);
-  const Pose to = pose_of(robot, move.target, start);
+  Pose to = pose_of(robot, move.target, start);
   ToolWay way;
   way.goal = move.target;
   way.hold = hold_of(move.orientation, move.target);
   way.joints_count = ends_in_the_targets_pose(move.orientation);
+  if (way.hold == Hold::kAxis) to.linear() = least_turned_axis(from.linear(), to.linear());
   // The direction of a straight line is the same all along.
-  const bool turns = way.hold == Hold::kPose && move.orientation != Orientation::kFixed &&
-                     move.orientation != Orientation::kTangent;
+  const bool turns = way.hold == Hold::kAxis ||
+                     (way.hold == Hold::kPose && move.orientation != Orientation::kFixed &&
+                      move.orientation != Orientation::kTangent);
   const double turn = turns ? rotation_distance(from.linear(), to.linear()) : 0.0;
   if (way.hold != Hold::kWrist && (to.translation() - from.translation()).norm() < kNowhere &&
       turn < kNowhere) {
@@ -180,7 +190,10 @@ ToolWay way_of(const CircMove& move, const RobotModel& robot, const JointVector&
   way.hold = hold_of(move.orientation, move.target);
   way.joints_count = ends_in_the_targets_pose(move.orientation);
   std::unique_ptr<const OrientationCurve> orientation;
-  if (way.hold != Hold::kPose || move.orientation == Orientation::kFixed) {
+  if (way.hold == Hold::kAxis) {
+    orientation =
+        least_turn(from.linear(), least_turned_axis(from.linear(), to.linear()), arc->length());
+  } else if (way.hold != Hold::kPose || move.orientation == Orientation::kFixed) {
     orientation = steady(from.linear(), Eigen::Vector3d::Zero());
   } else if (move.orientation == Orientation::kTangent) {
     orientation = steady(from.linear(), arc->axis() * (arc->angle() / arc->length()));
@@ -203,7 +216,7 @@ ToolWay way_of(const TurnMove& move, const RobotModel& robot, const JointVector&
   if (move.orientation == Orientation::kLeast || move.orientation == Orientation::kThrough) {
     throw MotionError(ErrorCode::kBadArgument,
                       "a turn by centre, axis and angle has no target orientation to go to",
-                      {"orientation=\"fixed\", \"tangent\", \"wrist\" or \"free\""});
+                      {"orientation=\"fixed\", \"tangent\", \"wrist\", \"spin\" or \"free\""});
   }
   if (!(std::abs(move.angle) <= kMostTurns * 2.0 * kPi)) {
     char text[120];

@@ -40,6 +40,10 @@ struct ToolWay {
 [[nodiscard]] std::unique_ptr<const OrientationCurve> least_turn(const Eigen::Matrix3d& from,
                                                                  const Eigen::Matrix3d& to,
                                                                  double length);
+/// An orientation whose z axis is that of `to`, by the least turn from `from`.
+/// @throws MotionError(kHalfTurn)
+[[nodiscard]] Eigen::Matrix3d least_turned_axis(const Eigen::Matrix3d& from,
+                                                const Eigen::Matrix3d& to);
 /// @throws MotionError(kUncontrolled)
 void require_kinematics(const RobotModel& robot);
 /// Refuses joints of the wrong number, not finite, or outside the limits.

@@ -6,7 +6,8 @@ namespace {
 constexpr Word<Orientation> kOrientations[] = {
     {Orientation::kLeast, "least"},     {Orientation::kWrist, "wrist"},
     {Orientation::kFixed, "fixed"},     {Orientation::kTangent, "tangent"},
-    {Orientation::kThrough, "through"}, {Orientation::kFree, "free"}};
+    {Orientation::kThrough, "through"}, {Orientation::kSpin, "spin"},
+    {Orientation::kFree, "free"}};
 
 }  // namespace
 

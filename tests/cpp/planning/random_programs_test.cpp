@@ -1,6 +1,7 @@
 // Random programs of mixed moves: each ends in a certified motion or a named error.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -54,7 +55,7 @@ decltype(Step::what) random_curve_move(const RobotModel& robot, const JointVecto
     return {x, y, normal(random)};
   };
   const Pose end = robot.forward().pose(q);
-  const auto orientation = static_cast<Orientation>(random() % 6);
+  const auto orientation = static_cast<Orientation>(random() % 7);
   switch (random() % 3) {
     case 0: {
       Pose via = end;
@@ -110,9 +111,9 @@ MotionProgram random_program(const RobotModel& robot, std::mt19937& random) {
     } else if (random() % 6 == 0) {
       script.add(LinMove{PositionTarget{robot.forward().pose(q).translation()}}, options);
     } else {
-      script.add(
-          LinMove{PoseTarget{robot.forward().pose(q)}, static_cast<Orientation>(random() % 3)},
-          options);
+      constexpr std::array kOfLines = {Orientation::kLeast, Orientation::kWrist,
+                                       Orientation::kFixed, Orientation::kSpin};
+      script.add(LinMove{PoseTarget{robot.forward().pose(q)}, kOfLines[random() % 4]}, options);
     }
     if (random() % 8 == 0) script.add(Wait{random() % 3 == 0 ? 0.0 : 0.1 * uniform(random)});
     for (size_t k = random() % 8 == 0 ? 1 + random() % 9 : 0; k > 0; --k) {

@@ -35,6 +35,7 @@ enum class Orientation {
   kFixed,    ///< stays as it is at the start; the target's is not used
   kTangent,  ///< turns with the curve's direction, as a nozzle that is led along it
   kThrough,  ///< through the orientation of every point, C²
+  kSpin,     ///< the tool's z axis by the least turn to the goal's; free to spin about it
   kFree,     ///< left to the joints: only the position is held
 };
 
