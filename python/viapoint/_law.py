@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from . import _core
 from ._arguments import ArrayLike, Vector, integer, number, numbers_of
+from ._drawn import Drawn
 from .errors import BadArgumentError
 
 AxisLaw = _core.profile.AxisLaw
@@ -44,7 +44,7 @@ class Part(NamedTuple):
     coefficients: Vector
 
 
-class Law:
+class Law(Drawn):
     """The course of one axis, or of n axes at once, over time.
 
     Attributes
@@ -142,44 +142,6 @@ class Law:
             Part(start, end, _without_high_zeros(np.array(coefficients)))
             for start, end, coefficients in self._axes[index].parts()
         ]
-
-    def plot(
-        self,
-        path: str | os.PathLike[str],
-        *,
-        title: str = "",
-        unit: str = "rad",
-        names: Sequence[str] | None = None,
-        points: tuple[ArrayLike, ArrayLike] | None = None,
-        limits: Mapping[str, float] | None = None,
-    ) -> None:
-        """Draw position, velocity, acceleration and jerk over time, with their exact extremes.
-
-        Parameters
-        ----------
-        path : str or path-like
-            The picture: .png, .svg or .pdf.
-        title : str
-            Above it.
-        unit : str
-            Of the positions, for the labels.
-        names : sequence of str, optional
-            One an axis, for the legend; by default the axes' numbers.
-        points : (times (k,), positions (k,) or (k, n)), optional
-            Marked in the position's panel: via points or control points.
-        limits : mapping, optional
-            Of ``"velocity"``, ``"acceleration"`` or ``"jerk"``, drawn both ways.
-
-        Raises
-        ------
-        BadArgumentError
-            Another ending, sizes that do not fit, an unknown limit.
-        FileError
-            The file cannot be written.
-        """
-        from ._law_plot import Marks, save_law_plot
-
-        save_law_plot(self, path, title, Marks(unit, names, points, limits or {}))
 
     def __repr__(self) -> str:
         """Name the kind, the axes and the time."""

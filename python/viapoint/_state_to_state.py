@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Mapping, Sequence
 from typing import Literal, NamedTuple
 
 import numpy as np
 
 from . import _core
 from ._arguments import ArrayLike, Vector, integer, number, numbers_of
+from ._drawn import Drawn
 from ._law import Extremes, Part, State
 from .errors import BadArgumentError
 
@@ -27,7 +26,7 @@ class StateSamples(NamedTuple):
     qddd: Vector
 
 
-class StateMotion:
+class StateMotion(Drawn):
     """Joints on their way from state to state, in phases of constant jerk.
 
     Attributes
@@ -168,43 +167,6 @@ class StateMotion:
     def end(self) -> float:
         """When it ends [s]: `duration`."""
         return self.duration
-
-    def plot(
-        self,
-        path: str | os.PathLike[str],
-        *,
-        title: str = "",
-        unit: str = "rad",
-        names: Sequence[str] | None = None,
-        limits: Mapping[str, float] | None = None,
-    ) -> None:
-        """Draw position, velocity, acceleration and jerk over time, with their exact extremes.
-
-        Parameters
-        ----------
-        path : str or path-like
-            The picture: .png, .svg or .pdf.
-        title : str
-            Above it.
-        unit : str
-            Of the positions, for the labels.
-        names : sequence of str, optional
-            One a joint, for the legend; by default the joints' numbers.
-        limits : mapping, optional
-            Of ``"velocity"``, ``"acceleration"`` or ``"jerk"``, drawn both ways.
-
-        Raises
-        ------
-        BadArgumentError
-            Nothing moves, another ending, sizes that do not fit, an unknown limit.
-        FileError
-            The file cannot be written.
-        """
-        from ._law_plot import Marks, save_law_plot
-
-        if not self.duration > 0.0:
-            raise BadArgumentError("nothing moves: there is nothing to draw.")
-        save_law_plot(self, path, title, Marks(unit, names, None, limits or {}))
 
     def __repr__(self) -> str:
         """Count joints and time."""

@@ -186,6 +186,7 @@ TEST_F(RunProgram, ALogThatWouldOverwriteWhatIsReadIsRefusedBeforeAnythingMoves)
 TEST_F(RunProgram, ALogThatFailsAfterTheMotionLeavesTheTableAndIsToldByTheExitCode) {
   rlimit before{};
   ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  // SIG_IGN is the C library's macro: a handler made of a number.
   const auto handler = std::signal(SIGXFSZ, SIG_IGN);  // NOLINT(performance-no-int-to-ptr)
   const rlimit small{4096, before.rlim_max};           // the program fits, the log does not
   ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
