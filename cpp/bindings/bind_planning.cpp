@@ -151,6 +151,13 @@ void bind_certificate(py::module_& m) {
         return "<Extremum " + std::to_string(e.value) + ", share " + std::to_string(e.share) +
                ", t " + std::to_string(e.time) + " s, move " + std::to_string(e.move) + ">";
       });
+  py::class_<ToolExtrema>(m, "ToolExtrema",
+                          "The worst of the tool, against the limits that each move gives it; zero "
+                          "where no move limits it.")
+      .def_readonly("speed", &ToolExtrema::speed, "Of the tool point [m/s].")
+      .def_readonly("acceleration", &ToolExtrema::acceleration, "Of the tool point [m/s²].")
+      .def_readonly("angular_speed", &ToolExtrema::angular_speed, "[rad/s]")
+      .def_readonly("angular_acceleration", &ToolExtrema::angular_acceleration, "[rad/s²]");
   py::class_<Certificate>(m, "Certificate", "Proven bounds over a whole motion.")
       .def_readonly("velocity", &Certificate::velocity, "One Extremum a joint.")
       .def_readonly("acceleration", &Certificate::acceleration, "One Extremum a joint.")
@@ -166,6 +173,8 @@ void bind_certificate(py::module_& m) {
       .def_property_readonly(
           "jerk_share", [](const Certificate& c) { return column(c.jerk, &Extremum::share); },
           "(n,) worst share of the jerk limit")
+      .def_readonly("tool", &Certificate::tool,
+                    "Speeds and accelerations of the tool, where moves limit them.")
       .def_property_readonly(
           "position_min", [](const Certificate& c) { return Vector(c.position_min); },
           "(n,) least joint position reached [rad or m]")

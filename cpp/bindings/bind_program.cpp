@@ -122,11 +122,18 @@ void bind_parts(py::module_& m) {
           py::arg("position"));
   py::class_<MoveOptions>(m, "MoveOptions", "Wishes of one move.")
       .def(py::init([](std::optional<double> speed, std::optional<double> acceleration,
-                       std::optional<double> scale, const std::string& zone, double size) {
-             return MoveOptions{speed, acceleration, scale, zone_from(zone, size)};
+                       std::optional<double> angular_speed,
+                       std::optional<double> angular_acceleration,
+                       std::optional<double> process_speed, std::optional<double> scale,
+                       const std::string& zone, double size) {
+             return MoveOptions{
+                 speed,         acceleration,         scale,        zone_from(zone, size),
+                 angular_speed, angular_acceleration, process_speed};
            }),
            py::kw_only(), py::arg("speed") = py::none(), py::arg("acceleration") = py::none(),
-           py::arg("scale") = py::none(), py::arg("zone") = "fine", py::arg("size") = 0.0);
+           py::arg("angular_speed") = py::none(), py::arg("angular_acceleration") = py::none(),
+           py::arg("process_speed") = py::none(), py::arg("scale") = py::none(),
+           py::arg("zone") = "fine", py::arg("size") = 0.0);
 }
 
 }  // namespace

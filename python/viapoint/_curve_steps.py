@@ -37,6 +37,8 @@ class CurveSteps(StepList):
         orientation: ArcOrientation | None = None,
         speed: float | None = None,
         acceleration: float | None = None,
+        angular_speed: float | None = None,
+        angular_acceleration: float | None = None,
         scale: float | None = None,
         zone: ZoneLike | None = None,
     ) -> Self:
@@ -66,7 +68,9 @@ class CurveSteps(StepList):
             spin about it; or only the position held. About an axis there is no end pose, so
             "least" and "through" mean nothing.
         speed, acceleration : float, optional
-            At the tool [m/s], [m/s²].
+            At most that at the tool's point [m/s], [m/s²].
+        angular_speed, angular_acceleration : float, optional
+            At most that of the tool's turning [rad/s], [rad/s²].
         scale : float, optional
             Share of all joint limits, in (0, 1].
         zone : Zone, float or "fine", optional
@@ -77,7 +81,14 @@ class CurveSteps(StepList):
         BadArgumentError, NotARotationError
             By the argument's name.
         """
-        options = self._options(speed=speed, acceleration=acceleration, scale=scale, zone=zone)
+        options = self._options(
+            speed=speed,
+            acceleration=acceleration,
+            angular_speed=angular_speed,
+            angular_acceleration=angular_acceleration,
+            scale=scale,
+            zone=zone,
+        )
         if via is not None:
             if center is not None or axis is not None or angle is not None or pitch != 0.0:
                 raise BadArgumentError(
@@ -115,6 +126,8 @@ class CurveSteps(StepList):
         axis: ArrayLike | None = None,
         speed: float | None = None,
         acceleration: float | None = None,
+        angular_speed: float | None = None,
+        angular_acceleration: float | None = None,
         scale: float | None = None,
         zone: ZoneLike | None = None,
     ) -> Self:
@@ -129,7 +142,9 @@ class CurveSteps(StepList):
         axis : array_like, (3,), optional
             Direction in the base frame. Default: the z axis of the tool.
         speed, acceleration : float, optional
-            At the tool's point [m/s], [m/s²].
+            At most that at the tool's point [m/s], [m/s²].
+        angular_speed, angular_acceleration : float, optional
+            At most that of the tool's turning [rad/s], [rad/s²].
         scale : float, optional
             Share of all joint limits, in (0, 1].
         zone : Zone, float or "fine", optional
@@ -140,7 +155,14 @@ class CurveSteps(StepList):
         BadArgumentError
             By the argument's name.
         """
-        options = self._options(speed=speed, acceleration=acceleration, scale=scale, zone=zone)
+        options = self._options(
+            speed=speed,
+            acceleration=acceleration,
+            angular_speed=angular_speed,
+            angular_acceleration=angular_acceleration,
+            scale=scale,
+            zone=zone,
+        )
         self._core.add_turn(
             None,
             None if axis is None else vector(axis, "axis", 3, "x, y, z"),
@@ -162,6 +184,8 @@ class CurveSteps(StepList):
         orientation: SplineOrientation | None = None,
         speed: float | None = None,
         acceleration: float | None = None,
+        angular_speed: float | None = None,
+        angular_acceleration: float | None = None,
         scale: float | None = None,
         zone: ZoneLike | None = None,
     ) -> Self:
@@ -187,7 +211,9 @@ class CurveSteps(StepList):
             interpolated; as it is at the start; led along the curve; its z axis through that of
             every point, free to spin about it; or left to the joints (default for `positions`).
         speed, acceleration : float, optional
-            At the tool [m/s], [m/s²]; of no meaning in joint space.
+            At most that at the tool's point [m/s], [m/s²]; of no meaning in joint space.
+        angular_speed, angular_acceleration : float, optional
+            At most that of the tool's turning [rad/s], [rad/s²]; of no meaning in joint space.
         scale : float, optional
             Share of all joint limits, in (0, 1].
         zone : Zone, float or "fine", optional
@@ -198,7 +224,14 @@ class CurveSteps(StepList):
         BadArgumentError, NotARotationError
             By the argument's name.
         """
-        options = self._options(speed=speed, acceleration=acceleration, scale=scale, zone=zone)
+        options = self._options(
+            speed=speed,
+            acceleration=acceleration,
+            angular_speed=angular_speed,
+            angular_acceleration=angular_acceleration,
+            scale=scale,
+            zone=zone,
+        )
         at: list[float] = []
         start = None
         only_positions = positions is not None

@@ -35,7 +35,9 @@ class Program(CurveSteps):
     start : array_like, (n,)
         Joints where the program begins [rad or m].
     speed, acceleration : float, optional
-        Default for Cartesian moves, at the tool [m/s], [m/s²]. Default: the limits only.
+        Default for Cartesian moves, at the tool's point [m/s], [m/s²]. Default: the limits only.
+    angular_speed, angular_acceleration : float, optional
+        Likewise, of the tool's turning [rad/s], [rad/s²].
     scale : float, optional
         Default share of all joint limits, in (0, 1].
     zone : Zone, float or "fine"
@@ -62,6 +64,8 @@ class Program(CurveSteps):
         start: ArrayLike,
         speed: float | None = None,
         acceleration: float | None = None,
+        angular_speed: float | None = None,
+        angular_acceleration: float | None = None,
         scale: float | None = None,
         zone: ZoneLike = "fine",
         name: str = "program",
@@ -71,7 +75,14 @@ class Program(CurveSteps):
         tool: Tool | ArrayLike | None = None,
     ) -> None:
         super().__init__(
-            robot, start=start, speed=speed, acceleration=acceleration, scale=scale, zone=zone
+            robot,
+            start=start,
+            speed=speed,
+            acceleration=acceleration,
+            angular_speed=angular_speed,
+            angular_acceleration=angular_acceleration,
+            scale=scale,
+            zone=zone,
         )
         self.name = name
         self._core.set_tolerance(
@@ -127,6 +138,8 @@ class Program(CurveSteps):
         orientation: Literal["least", "wrist", "fixed", "spin"] = "least",
         speed: float | None = None,
         acceleration: float | None = None,
+        angular_speed: float | None = None,
+        angular_acceleration: float | None = None,
         scale: float | None = None,
         zone: ZoneLike | None = None,
     ) -> Program:
@@ -143,7 +156,9 @@ class Program(CurveSteps):
             position straight; the orientation as it is at the start; or the tool's z axis by the
             least turn to the target's, while the tool may spin about it as the joints like.
         speed, acceleration : float, optional
-            At the tool [m/s], [m/s²].
+            At most that at the tool's point [m/s], [m/s²].
+        angular_speed, angular_acceleration : float, optional
+            At most that of the tool's turning [rad/s], [rad/s²].
         scale : float, optional
             Share of all joint limits, in (0, 1].
         zone : Zone, float or "fine", optional
@@ -154,7 +169,14 @@ class Program(CurveSteps):
         BadArgumentError, NotARotationError
             By the argument's name.
         """
-        options = self._options(speed=speed, acceleration=acceleration, scale=scale, zone=zone)
+        options = self._options(
+            speed=speed,
+            acceleration=acceleration,
+            angular_speed=angular_speed,
+            angular_acceleration=angular_acceleration,
+            scale=scale,
+            zone=zone,
+        )
         way = choice(orientation, "orientation", ("least", "wrist", "fixed", "spin"))
         file, line = caller()
         self._core.add_movel(self._target(target, position), way, options, file, line)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import inf
+
 from . import _core
 from ._arguments import (
     NOTEWORTHY_CORRECTION,
@@ -27,11 +29,20 @@ class StepList:
         start: ArrayLike,
         speed: float | None,
         acceleration: float | None,
+        angular_speed: float | None,
+        angular_acceleration: float | None,
         scale: float | None,
         zone: ZoneLike,
     ) -> None:
         self.robot = require_robot(robot)
-        self._defaults = (speed, acceleration, scale, zone_of(zone))
+        self._defaults = {
+            "speed": speed,
+            "acceleration": acceleration,
+            "angular_speed": angular_speed,
+            "angular_acceleration": angular_acceleration,
+            "scale": scale,
+        }
+        self._zone = zone_of(zone)
         self._options()  # refuses a bad default here, where it was given
         self._core = _core.MotionProgram(robot._core, vector(start, "start", robot.joints))
 
@@ -49,17 +60,22 @@ class StepList:
         *,
         speed: float | None = None,
         acceleration: float | None = None,
+        angular_speed: float | None = None,
+        angular_acceleration: float | None = None,
         scale: float | None = None,
         zone: ZoneLike | None = None,
     ) -> _core.MoveOptions:
-        base_speed, base_acceleration, base_scale, base_zone = self._defaults
-        zone = base_zone if zone is None else zone_of(zone)
+        zone = self._zone if zone is None else zone_of(zone)
+
+        def wish(value: float | None, name: str, unit: str, most: float = inf) -> float | None:
+            return _positive(self._defaults[name] if value is None else value, name, unit, most)
+
         return _core.MoveOptions(
-            speed=_positive(base_speed if speed is None else speed, "speed", "m/s"),
-            acceleration=_positive(
-                base_acceleration if acceleration is None else acceleration, "acceleration", "m/s²"
-            ),
-            scale=_positive(base_scale if scale is None else scale, "scale", "", most=1.0),
+            speed=wish(speed, "speed", "m/s"),
+            acceleration=wish(acceleration, "acceleration", "m/s²"),
+            angular_speed=wish(angular_speed, "angular_speed", "rad/s"),
+            angular_acceleration=wish(angular_acceleration, "angular_acceleration", "rad/s²"),
+            scale=wish(scale, "scale", "", most=1.0),
             zone=zone.kind,
             size=zone.size,
         )
@@ -91,7 +107,5 @@ class StepList:
         return _core.Target.joints(array)
 
 
-def _positive(
-    value: float | None, name: str, unit: str, most: float = float("inf")
-) -> float | None:
+def _positive(value: float | None, name: str, unit: str, most: float) -> float | None:
     return None if value is None else number(value, name, unit, above=0.0, most=most)

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <optional>
 
-#include "planning/tool_limits.hpp"
 #include "viapoint/path/position_limits.hpp"
 
 namespace viapoint::planning {
@@ -12,15 +11,11 @@ namespace {
 
 constexpr int kShrinks = 6;
 
-std::optional<double> smaller(const std::optional<double>& a, const std::optional<double>& b) {
-  if (!a) return b;
-  if (!b) return a;
-  return std::min(*a, *b);
-}
-
-/// In a corner the wishes of both legs count.
-ToolWishes both(const ToolWishes& a, const ToolWishes& b) {
-  return {smaller(a.speed, b.speed), smaller(a.acceleration, b.acceleration)};
+/// In a corner the limits of both legs count.
+ToolLimits both(const ToolLimits& a, const ToolLimits& b) {
+  return {std::min(a.speed, b.speed), std::min(a.acceleration, b.acceleration),
+          std::min(a.angular_speed, b.angular_speed),
+          std::min(a.angular_acceleration, b.angular_acceleration)};
 }
 
 /// True when the blend keeps position and coupled limits all the way. Legs inside the limits do
@@ -29,13 +24,12 @@ bool keeps_limits(const JointPiece& blend, const JointLimits& limits) {
   return !piece_position_violation(blend, limits);
 }
 
-/// Length of a joint line in joint space; nothing for any other leg and for one with speed wishes.
+/// Length of a joint line in joint space; nothing for any other leg and for one that limits the
+/// tool.
 std::optional<double> free_length(const JointPath& leg) {
   const JointPiece& piece = leg.pieces().front();
   const bool line = leg.pieces().size() == 1 && piece.kind == PieceKind::kJointLine;
-  if (!line || std::isfinite(piece.rate_limit) || std::isfinite(piece.rate_change_limit)) {
-    return std::nullopt;
-  }
+  if (!line || piece.tool.any()) return std::nullopt;
   return piece.coefficients.row(1).norm();
 }
 
@@ -52,7 +46,7 @@ Corner fit_corner(const RobotModel& robot, const Leg& before, const JointPath& t
     if (keeps_limits(corner.blend, robot.limits())) {
       if (attempt > 0) corner.reason = "a larger corner leaves the joint limits";
       corner.blend.scale = std::min(tail.pieces().back().scale, after.path.pieces().front().scale);
-      if (arm != nullptr) limit_tool(robot, corner.blend, both(before.wishes(), after.wishes()));
+      corner.blend.tool = both(before.tool_limits(), after.tool_limits());
       return corner;
     }
     zone.size *= 0.5;

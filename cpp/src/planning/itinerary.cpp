@@ -18,8 +18,8 @@ namespace viapoint::planning {
 namespace {
 
 constexpr int kOutputs = 64;
-/// Speed [m/s], acceleration [m/s²] and scale: below this a move takes for ever, above nothing is
-/// limited.
+/// Speeds [m/s, rad/s], accelerations [m/s², rad/s²] and scale: below this a move takes for ever,
+/// above nothing is limited.
 constexpr double kLeastWish = 1e-6;
 constexpr double kMostWish = 1e9;
 
@@ -244,6 +244,8 @@ class Walk {
     };
     within(options.speed, "speed", kMostWish);
     within(options.acceleration, "acceleration", kMostWish);
+    within(options.angular_speed, "angular_speed", kMostWish);
+    within(options.angular_acceleration, "angular_acceleration", kMostWish);
     within(options.scale, "scale", 1.0);
     if (!(options.zone.size >= 0.0) || !std::isfinite(options.zone.size)) {
       add(ErrorCode::kBadArgument,

@@ -2,7 +2,6 @@
 /// One move as geometry, before corners and time.
 #pragma once
 
-#include "planning/tool_limits.hpp"
 #include "viapoint/kinematics/robot_model.hpp"
 #include "viapoint/path/joint_path.hpp"
 #include "viapoint/program/motion_program.hpp"
@@ -18,9 +17,15 @@ struct Leg {
   JointPath path;     ///< from start to goal; pieces carry scale, speed wishes and step
   MoveOptions options;
   bool cartesian = false;
-  /// What the program wishes of the tool; of no meaning in joint space.
-  [[nodiscard]] ToolWishes wishes() const {
-    return cartesian ? ToolWishes{options.speed, options.acceleration} : ToolWishes{};
+  /// What the program allows the tool; of no meaning in joint space.
+  [[nodiscard]] ToolLimits tool_limits() const {
+    ToolLimits limits;
+    if (!cartesian) return limits;
+    limits.speed = options.speed.value_or(ToolLimits::kNone);
+    limits.acceleration = options.acceleration.value_or(ToolLimits::kNone);
+    limits.angular_speed = options.angular_speed.value_or(ToolLimits::kNone);
+    limits.angular_acceleration = options.angular_acceleration.value_or(ToolLimits::kNone);
+    return limits;
   }
 
   double position_deviation = 0.0;  ///< proven, from the wanted curve [m]

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "planning/spline_way.hpp"
-#include "planning/tool_limits.hpp"
 #include "planning/tool_way.hpp"
 #include "viapoint/kinematics/inverse_kinematics.hpp"
 #include "viapoint/path/insertion.hpp"
@@ -206,7 +205,7 @@ void LegBuilder::apply(Leg& leg, const MoveOptions& options, int step) const {
   for (JointPiece piece : leg.path.pieces()) {
     piece.move = step;
     piece.scale = options.scale.value_or(1.0);
-    if (leg.cartesian) limit_tool(robot_, piece, leg.wishes());
+    piece.tool = leg.tool_limits();
     path.append(std::move(piece));
   }
   leg.path = std::move(path);

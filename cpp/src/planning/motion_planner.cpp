@@ -9,6 +9,7 @@
 #include "planning/itinerary.hpp"
 #include "planning/section.hpp"
 #include "planning/tool_changes.hpp"
+#include "planning/tool_proof.hpp"
 #include "viapoint/planning/timed_plan.hpp"
 
 namespace viapoint {
@@ -138,9 +139,18 @@ class Composer {
     looked_at_ = pieces_.size();
   }
 
+  /// When the next piece begins [s].
+  double time_so_far() {
+    for (; timed_ < pieces_.size(); ++timed_) time_ += pieces_[timed_].duration;
+    return time_;
+  }
+
   void flush_legs() {
     if (legs_.empty()) return;
     for (const Section& section : sections()) {
+      if (!section.tool.empty()) {
+        tool_.add(arm_->forward(), section.pieces, section.tool, time_so_far());
+      }
       pieces_.insert(pieces_.end(), section.pieces.begin(), section.pieces.end());
       motion_.corners.insert(motion_.corners.end(), section.corners.begin(), section.corners.end());
     }
@@ -169,11 +179,16 @@ class Composer {
     look_at_manipulability();
     motion_.trajectory = Trajectory(std::move(pieces_), arm_->limits());
     Certificate& certificate = motion_.trajectory.certificate();
+    certificate.tool = tool_.extrema();
     certificate.path_deviation = position_deviation_;
     certificate.angle_deviation = angle_deviation_;
     certificate.manipulability = manipulability_;
     for (const CornerOutcome& corner : motion_.corners) {
       certificate.zone_deviation = std::max(certificate.zone_deviation, corner.cut);
+    }
+    motion_.tool_spans = tool_.take_spans();
+    for (Problem& problem : planning::problems_of(certificate.tool)) {
+      certificate.problems.push_back(std::move(problem));
     }
     for (Problem problem : certificate.problems) {
       planning::locate(problem, program_, problem.move.value_or(-1));
@@ -189,6 +204,9 @@ class Composer {
   std::vector<Leg> legs_;  ///< since the last stop that the program asks for
   std::vector<TrajectoryPiece> pieces_;
   std::vector<Output> outputs_;
+  planning::ToolProof tool_;
+  double time_ = 0.0;  ///< of the first timed_ pieces [s]
+  size_t timed_ = 0;
   double position_deviation_ = 0.0;
   double angle_deviation_ = 0.0;
   double manipulability_ = std::numeric_limits<double>::infinity();

@@ -16,8 +16,6 @@ JointPath cut(const JointPath& path, double s0, double s1, double scale) {
     if (end - begin <= sliver) continue;
     JointPiece piece = begin <= 0.0 && end >= whole.length ? whole : whole.part(begin, end);
     piece.length *= scale;
-    piece.rate_limit *= scale;
-    piece.rate_change_limit *= scale;
     result.append(std::move(piece));
   }
   return result;

@@ -1,10 +1,12 @@
 #include "planning/section.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <utility>
 
 #include "planning/corner_fit.hpp"
 #include "planning/path_cut.hpp"
+#include "viapoint/path/tool_rates.hpp"
 #include "viapoint/trajectory/time_parameterizer.hpp"
 
 namespace viapoint::planning {
@@ -85,9 +87,28 @@ class Builder {
     JointPath rounded = head;
     rounded.append(blend);
     append(rounded, rest);
-    const double with_stop = duration_of(parameterize(tail_, robot_.limits())) +
-                             duration_of(parameterize(legs_[i + 1].path, robot_.limits()));
-    return with_stop - duration_of(parameterize(rounded, robot_.limits()));
+    const double with_stop =
+        duration_of(timed(tail_).pieces) + duration_of(timed(legs_[i + 1].path).pieces);
+    return with_stop - duration_of(timed(rounded).pieces);
+  }
+
+  /// From rest to rest.
+  [[nodiscard]] Section timed(const JointPath& path) const {
+    const auto& pieces = path.pieces();
+    const bool limits_tool =
+        std::any_of(pieces.begin(), pieces.end(), [](const auto& p) { return p.tool.any(); });
+    Section section;
+    if (!limits_tool) {
+      section.pieces = parameterize(path, robot_.limits());
+      return section;
+    }
+    const PathWithTool with_tool = with_tool_rates(robot_.forward(), path);
+    TimedPath result = parameterize(with_tool.path, robot_.limits(), with_tool.rates);
+    section.pieces = std::move(result.pieces);
+    for (const size_t origin : result.origin) {
+      section.tool.push_back(with_tool.path.pieces()[origin].tool);
+    }
+    return section;
   }
 
   static void append(JointPath& path, const JointPath& more) {
@@ -107,8 +128,7 @@ class Builder {
   /// Leg i ends at rest: times what has gathered and begins anew with the next leg.
   void finish(size_t i) {
     append(path_, tail_);
-    Section section;
-    section.pieces = parameterize(path_, robot_.limits());
+    Section section = timed(path_);
     section.corners = std::move(corners_);
     sections_.push_back(std::move(section));
     path_ = JointPath();

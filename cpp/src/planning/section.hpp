@@ -7,6 +7,7 @@
 
 #include "planning/leg.hpp"
 #include "viapoint/kinematics/robot_model.hpp"
+#include "viapoint/path/joint_path.hpp"
 #include "viapoint/planning/motion_planner.hpp"
 #include "viapoint/trajectory/trajectory_piece.hpp"
 
@@ -15,6 +16,7 @@ namespace viapoint::planning {
 /// A stretch of motion from rest to rest.
 struct Section {
   std::vector<TrajectoryPiece> pieces;
+  std::vector<ToolLimits> tool;        ///< one a piece; empty where none limits the tool
   std::vector<CornerOutcome> corners;  ///< of the legs inside, in order
 };
 

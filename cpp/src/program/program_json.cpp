@@ -83,6 +83,9 @@ Json json_of(const Step& step) {
   }
   if (options.speed) json["speed"] = *options.speed;
   if (options.acceleration) json["acceleration"] = *options.acceleration;
+  if (options.angular_speed) json["angular_speed"] = *options.angular_speed;
+  if (options.angular_acceleration) json["angular_acceleration"] = *options.angular_acceleration;
+  if (options.process_speed) json["process_speed"] = *options.process_speed;
   if (options.scale) json["scale"] = *options.scale;
   if (!step.source.file.empty() || step.source.line != 0) {
     json["source"] = {{"file", step.source.file}, {"line", step.source.line}};
@@ -149,15 +152,34 @@ void require_one_kind(const Node& node) {
   }
   if (node.has("via") && !node.has("circ")) node.at("via").refuse("no via but on a circ");
   if (!node.has("ptp") && !cartesian) {
-    for (const char* wish : {"zone", "speed", "acceleration", "scale"}) {
+    for (const char* wish : {"zone", "speed", "acceleration", "angular_speed",
+                             "angular_acceleration", "process_speed", "scale"}) {
       if (node.has(wish)) node.at(wish).refuse(std::string("no ") + wish + " but on a move");
     }
   }
 }
 
 Step step_of(const Node& node) {
-  node.only({"ptp", "lin", "circ", "via", "turn", "spline", "orientation", "wait", "set_do",
-             "timed", "set_frame", "set_tool", "zone", "speed", "acceleration", "scale", "source"});
+  node.only({"ptp",
+             "lin",
+             "circ",
+             "via",
+             "turn",
+             "spline",
+             "orientation",
+             "wait",
+             "set_do",
+             "timed",
+             "set_frame",
+             "set_tool",
+             "zone",
+             "speed",
+             "acceleration",
+             "angular_speed",
+             "angular_acceleration",
+             "process_speed",
+             "scale",
+             "source"});
   require_one_kind(node);
   Step step;
   if (node.has("ptp")) {
@@ -188,6 +210,9 @@ Step step_of(const Node& node) {
   if (node.has("zone")) step.options.zone = zone_of(node.at("zone"));
   step.options.speed = wish(node, "speed");
   step.options.acceleration = wish(node, "acceleration");
+  step.options.angular_speed = wish(node, "angular_speed");
+  step.options.angular_acceleration = wish(node, "angular_acceleration");
+  step.options.process_speed = wish(node, "process_speed");
   step.options.scale = wish(node, "scale");
   if (node.has("source")) {
     const Node source = node.at("source");

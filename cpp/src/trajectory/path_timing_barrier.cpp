@@ -57,7 +57,8 @@ double BarrierProblem::assemble_cell(size_t k, const SquareRate& rate, double we
   const double most = cell.most();
   for (const Four& v : {kInnerAtStart, kInnerAtEnd}) {
     const double inner = dot(v, x), below = 1.0 / inner, above = 1.0 / (most - inner);
-    terms.add(v, w * (above - below), c * (above * above + below * below));
+    terms.add(v, w * (ceiling_weight_ * above - below),
+              c * (ceiling_weight_ * above * above + below * below));
   }
   terms.gradient[0] += w / x[0];
   terms.gradient[2] += w / x[2];
@@ -65,6 +66,23 @@ double BarrierProblem::assemble_cell(size_t k, const SquareRate& rate, double we
     assemble_straight(k + 1, x, w, c, terms);
   } else {
     assemble_curved(cell, x, w, c, terms);
+  }
+  for (size_t r = cell.first_cone; r < cell.last_cone; ++r) {
+    CellCone& cone = cell_cones_[r];
+    const double per_room = 1.0 / cell.factor.acceleration;
+    cone.y = per_room * dot(cone.along, x);
+    cone.n = per_room * dot(cone.across, x);
+    cone.inverse = 1.0 / (1.0 - cone.y * cone.y - cone.n * cone.n);
+    const double first = 2.0 * cone.inverse;
+    Four along, across, half;  // slopes of both parts, and half of that of |y|²
+    for (size_t i = 0; i < 4; ++i) {
+      along[i] = per_room * cone.along[i];
+      across[i] = per_room * cone.across[i];
+      half[i] = cone.y * along[i] + cone.n * across[i];
+    }
+    terms.add(along, w * first * cone.y, c * first);
+    terms.add(across, w * first * cone.n, c * first);
+    terms.add(half, 0.0, c * first * first);
   }
   newton.add(k, terms, cell.length, cell.gear);
   return time;
@@ -164,14 +182,35 @@ void BarrierProblem::assemble_node(size_t k, const NodeRate& rate, double weight
     bs += second * yb * ys;
     ss += second * ys * ys;
   }
-  newton.add(k, weight * (above + gb.sum()), weight * gs.sum(),
-             curvature * (above * above + bb.sum()), curvature * bs.sum(), curvature * ss.sum());
+  newton.add(k, weight * (ceiling_weight_ * above + gb.sum()), weight * gs.sum(),
+             curvature * (ceiling_weight_ * above * above + bb.sum()), curvature * bs.sum(),
+             curvature * ss.sum());
+  for (size_t r = node.first_cone; r < node.last_cone; ++r) {
+    ConeRow& cone = cones_[r];
+    const double yb = per_room * cone.b, ys = per_room * cone.slope, nb = per_room * cone.normal;
+    cone.y = rate.value * yb + rate.slope * ys;
+    cone.across = rate.value * nb;
+    cone.inverse = 1.0 / (1.0 - cone.y * cone.y - cone.across * cone.across);
+    // Half the slopes of |y|².
+    const double hb = cone.y * yb + cone.across * nb, hs = cone.y * ys;
+    const double first = 2.0 * cone.inverse, second = first * first;
+    newton.add(k, weight * first * hb, weight * first * hs,
+               curvature * (first * (yb * yb + nb * nb) + second * hb * hb),
+               curvature * (first * yb * ys + second * hb * hs),
+               curvature * (first * ys * ys + second * hs * hs));
+  }
 }
 
 double BarrierProblem::largest_step(const SquareRate& rate, const SquareRate& step) const {
   // The largest rate at which a slack is used up, per unit of step.
   double worst = 0.0;
   Pair worst_pair = Pair::Zero();
+  const auto consider_cone = [&](double y, double n, double inverse, double along, double across) {
+    // |y + t dy| = 1 for the least t > 0.
+    const double half = y * along + n * across;
+    const double square = along * along + across * across;
+    worst = std::max(worst, (half + std::sqrt(half * half + square / inverse)) * inverse);
+  };
   const auto consider = [&](const Use& use, const Pair& change, double room) {
     worst_pair = worst_pair.max((change - room) * (1.0 + use.y) * use.inverse)
                      .max((-change - room) * (1.0 - use.y) * use.inverse);
@@ -185,11 +224,23 @@ double BarrierProblem::largest_step(const SquareRate& rate, const SquareRate& st
       const AccelerationRows& rows = acceleration_rows_[r];
       consider(acceleration_use_[r], (per_room * db) * rows.b + (per_room * ds) * rows.slope, 0.0);
     }
+    for (size_t r = node.first_cone; r < node.last_cone; ++r) {
+      const ConeRow& cone = cones_[r];
+      const double along = per_room * (db * cone.b + ds * cone.slope);
+      const double across = per_room * db * cone.normal;
+      consider_cone(cone.y, cone.across, cone.inverse, along, across);
+    }
     if (k + 1 == nodes_.size()) break;
     const CellRows& cell = cells_[k + 1];
     const Four x = cell.numbers(rate[k], rate[k + 1]);
     const Four dx = cell.numbers(step[k], step[k + 1]);
     const double most = cell.most();
+    for (size_t r = cell.first_cone; r < cell.last_cone; ++r) {
+      const CellCone& cone = cell_cones_[r];
+      const double room = 1.0 / cell.factor.acceleration;
+      consider_cone(cone.y, cone.n, cone.inverse, room * dot(cone.along, dx),
+                    room * dot(cone.across, dx));
+    }
     for (const Four& v : {kInnerAtStart, kInnerAtEnd}) {
       const double inner = dot(v, x), change = dot(v, dx);
       worst = std::max({worst, change / (most - inner), -change / inner});

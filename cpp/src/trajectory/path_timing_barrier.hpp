@@ -4,11 +4,13 @@
 ///
 /// With b(s) = ṡ², s̈ = b'/2 and s⃛ = b''√b/2, so time is ∫ b^{-1/2} ds (Verscheure et al. 2009) and
 ///     q̇ = q'√b,   q̈ = q''b + q'b'/2,   |q'''b + 3/2 q''b' + 1/2 q'b''| <= j b^{-1/2}.
-/// b is a cubic in every cell with b, b' shared at the nodes: b'' is linear and may jump, as the
-/// jerk of the quickest motion does. All is linear in the unknowns but b^{-1/2}, which is convex:
-/// its tangent lies below, so limits held with the tangent hold in truth (convex–concave procedure,
-/// Lipp & Boyd 2016), and every iterate is feasible. Each Newton step of the log barrier takes a
-/// new tangent and costs one banded solution, O(nodes).
+/// The tool's speed is one more ceiling of b, and its acceleration p''b + p'b'/2 is to stay in a
+/// ball: a cone in (b, b'), with the barrier -log(1 - |y|²) of its two parts y, along the motion
+/// and across it. b is a cubic in every cell with b, b' shared at the nodes: b'' is linear and may
+/// jump, as the jerk of the quickest motion does. All is linear in the unknowns but b^{-1/2}, which
+/// is convex: its tangent lies below, so limits held with the tangent hold in truth (convex–concave
+/// procedure, Lipp & Boyd 2016), and every iterate is feasible. Each Newton step of the log barrier
+/// takes a new tangent and costs one banded solution, O(nodes).
 ///
 /// Where cells of different scale of s meet, b and b' at the node are those by the cell before; the
 /// cell after sees them times gear² and gear.
@@ -47,6 +49,8 @@ class BarrierProblem {
   [[nodiscard]] std::vector<Shares> shares(const SquareRate& rate) const;
   /// What the limits of each cell are multiplied by.
   [[nodiscard]] Shares limit_factors(size_t cell) const { return cells_[cell].factor; }
+  /// Weight of the ceilings on speed as a share of that of all other limits; 1 at first.
+  void set_ceiling_weight(double share) { ceiling_weight_ = share; }
   void set_limit_factors(const std::vector<Shares>& factors);
 
  private:
@@ -59,6 +63,16 @@ class BarrierProblem {
   /// |b · value + h b' · slope + h² b'' · bend| <= b^{-1/2}, by share of a jerk limit.
   struct JerkRows {
     Pair b, slope, bend;
+  };
+  /// |(b · value + slope · b', normal · value)| <= 1, by share of an acceleration of the tool.
+  struct ConeRow {
+    double b, slope, normal;
+    double y = 0.0, across = 0.0, inverse = 1.0;  ///< in use: both parts, 1 / (1 - |y|²)
+  };
+  /// The same in the middle of a cell, by its four numbers.
+  struct CellCone {
+    Four along, across;
+    double y = 0.0, n = 0.0, inverse = 1.0;
   };
   /// Of a pair of two-sided rows: what is used, y, and 1 / (1 - y²).
   struct Use {
@@ -73,13 +87,15 @@ class BarrierProblem {
     double most = 0.0;          ///< likewise, with the factors of the cells and the ramps
     double room = 1.0;          ///< factor on the acceleration limits
     size_t begin = 0, end = 0;  ///< rows
+    size_t first_cone = 0, last_cone = 0;
   };
   struct CellRows {
     double length = 0.0, gear = 1.0;
     double ceiling = 0.0;  ///< of b inside, in its own scale
     /// Rows of a straight cell, which has no others: of jerk by h² b'', of acceleration by h b'.
     double straight_jerk = 0.0, straight_acceleration = 0.0;
-    size_t begin = 0, end = 0;     ///< rows of all places
+    size_t begin = 0, end = 0;  ///< rows of all places
+    size_t first_cone = 0, last_cone = 0;
     Shares factor{1.0, 1.0, 1.0};  ///< on the limits
 
     /// Of the inner Bernstein coefficients of b, which bound it between the nodes.
@@ -116,9 +132,12 @@ class BarrierProblem {
   std::vector<Node> nodes_;
   std::vector<CellRows> cells_;
   std::vector<AccelerationRows> acceleration_rows_;
+  std::vector<ConeRow> cones_;
+  std::vector<CellCone> cell_cones_;
   std::vector<JerkRows> jerk_rows_;
   std::vector<Use> acceleration_use_, jerk_use_;  ///< of the rows
   std::vector<StraightUse> straight_use_;         ///< of the cells
+  double ceiling_weight_ = 1.0;
   double start_ceiling_ = 0.0, end_ceiling_ = 0.0;
 };
 

@@ -32,7 +32,7 @@ double Shares::stretch() const {
   return std::max({velocity, std::sqrt(acceleration), std::cbrt(jerk)});
 }
 
-Course::Course(const JointPath& path, const JointLimits& limits)
+Course::Course(const JointPath& path, const JointLimits& limits, std::span<const ToolRates> tool)
     : joints_(limits.joints()),
       per_velocity_(limits.velocity.cwiseInverse()),
       per_acceleration_(limits.acceleration.cwiseInverse()),
@@ -44,7 +44,10 @@ Course::Course(const JointPath& path, const JointLimits& limits)
   for (const JointPiece& piece : path.pieces()) {
     Stretch stretch;
     stretch.geometry = &piece;
-    stretch.straight = !piece.coefficients.bottomRows<4>().any();
+    if (!tool.empty() && tool[stretches_.size()].limits.any()) {
+      stretch.tool = &tool[stretches_.size()];
+    }
+    stretch.straight = stretch.tool == nullptr && !piece.coefficients.bottomRows<4>().any();
     const double start = speed_at_start(piece);
     const double end = stretch.straight ? start : speed_at_end(piece);
     const double chord = piece.coefficients.bottomRows<5>().colwise().sum().norm();

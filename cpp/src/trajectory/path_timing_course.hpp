@@ -3,11 +3,14 @@
 /// as the joints' way, with the limits by σ. What scale of s the pieces came in does not matter.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <span>
 #include <vector>
 
 #include "viapoint/core/joint_limits.hpp"
 #include "viapoint/path/joint_path.hpp"
+#include "viapoint/path/tool_rates.hpp"
 
 namespace viapoint::path_timing {
 
@@ -32,21 +35,27 @@ struct JointRates {
 /// One path piece in its own σ.
 struct Stretch {
   const JointPiece* geometry = nullptr;
-  double length = 0.0;        ///< of σ
-  double gear = 1.0;          ///< σ̇ here over σ̇ of the piece before, where they meet
+  const ToolRates* tool = nullptr;  ///< where the piece limits the tool
+  double length = 0.0;              ///< of σ
+  double gear = 1.0;                ///< σ̇ here over σ̇ of the piece before, where they meet
   double rate_limit = 0.0;    ///< of σ̇: its own wish, and on a straight piece all joints' limits
   double change_limit = 0.0;  ///< of |σ̈|, likewise
   double jerk_limit = 0.0;    ///< of |σ⃛| on a straight piece
   bool straight = false;
 };
 
-/// A section, from rest to rest. The path must outlive it.
+/// A section, from rest to rest. Path and tool rates must outlive it.
 class Course {
  public:
-  Course(const JointPath& path, const JointLimits& limits);
+  /// @param tool one a piece of the path, or none
+  Course(const JointPath& path, const JointLimits& limits, std::span<const ToolRates> tool = {});
 
   [[nodiscard]] int joints() const { return joints_; }
   [[nodiscard]] const std::vector<Stretch>& stretches() const { return stretches_; }
+  [[nodiscard]] bool limits_tool() const {
+    return std::any_of(stretches_.begin(), stretches_.end(),
+                       [](const Stretch& stretch) { return stretch.tool != nullptr; });
+  }
   /// One over the limits of a joint along a stretch.
   [[nodiscard]] Shares shares_per_rate(size_t stretch, int joint) const {
     const double per_scale = 1.0 / stretches_[stretch].geometry->scale;

@@ -6,6 +6,8 @@
 #include <span>
 #include <utility>
 
+#include "trajectory/path_timing_tool.hpp"
+
 namespace viapoint::path_timing {
 namespace {
 
@@ -18,7 +20,7 @@ constexpr std::array<double, 15> kStraightPlaces{
 constexpr std::array<double, 5> kCurvedPlaces{0.0, 0.25, 0.5, 0.75, 1.0};
 
 std::span<const double> places(const Stretch& stretch) {
-  if (stretch.straight) return kStraightPlaces;
+  if (stretch.straight || stretch.tool != nullptr) return kStraightPlaces;
   return kCurvedPlaces;
 }
 
@@ -32,10 +34,13 @@ constexpr double kCellShare = 0.8;
 struct Sample {
   double s;
   double z;  ///< ṡ^{3/2} at which a constant speed keeps every limit; after the sweeps, reachable
-  double change;        ///< |s̈| where q'' does not count
-  double jerk;          ///< |s⃛| where q'' and q''' do not count
-  double growth = 0.0;  ///< of z with s, likewise
-  double width = 0.0;   ///< w
+  double change;           ///< |s̈| where q'' does not count
+  double jerk;             ///< |s⃛| where q'' and q''' do not count
+  double growth = 0.0;     ///< of z with s, likewise
+  double width = 0.0;      ///< w
+  double top = kInfinite;  ///< z that a steady ceiling on the speed allows, where that rules
+
+  [[nodiscard]] bool cruises() const { return z >= top; }
 };
 
 struct Samples {
@@ -56,7 +61,9 @@ double three_quarters(double x) {
 
 Sample straight_sample(const Stretch& stretch, double s) {
   const double v = stretch.rate_limit;
-  return {s, v * std::sqrt(v), stretch.change_limit, stretch.jerk_limit};
+  Sample sample{s, v * std::sqrt(v), stretch.change_limit, stretch.jerk_limit};
+  sample.top = sample.z;
+  return sample;
 }
 
 Sample curved_sample(const Course& course, size_t index, double s) {
@@ -64,7 +71,7 @@ Sample curved_sample(const Course& course, size_t index, double s) {
   JointRates rates;
   course.rates(index, s, rates);
   double v = 1.0 / stretch.rate_limit, a = 1.0 / stretch.change_limit;
-  double j = 0.0, bend = 0.0, twist = 0.0;
+  double j = 0.0, bend = 0.0, twist = 0.0, steady = kInfinite;
   for (size_t i = 0; i < static_cast<size_t>(course.joints()); ++i) {
     v = std::max(v, std::abs(rates.velocity[i]));
     a = std::max(a, std::abs(rates.acceleration1[i]));
@@ -72,9 +79,20 @@ Sample curved_sample(const Course& course, size_t index, double s) {
     bend = std::max(bend, std::abs(rates.acceleration2[i]));
     twist = std::max(twist, std::abs(rates.jerk3[i]));
   }
+  if (stretch.tool != nullptr) {
+    const ToolPlace tool = tool_at(stretch, s);
+    v = std::max(v, tool.velocity);
+    steady = tool.velocity;
+    for (const ToolCone& cone : tool.cones) {
+      a = std::max(a, cone.slope);
+      bend = std::max(bend, std::hypot(cone.b, cone.normal));
+    }
+  }
   const double z =
       std::min({1.0 / (v * std::sqrt(v)), three_quarters(1.0 / bend), 1.0 / std::sqrt(twist)});
-  return {s, z, 1.0 / a, 1.0 / j};
+  Sample sample{s, z, 1.0 / a, 1.0 / j};
+  if (v == steady && z == 1.0 / (v * std::sqrt(v))) sample.top = z;
+  return sample;
 }
 
 /// z after `distance` from one place to another.
@@ -85,25 +103,23 @@ double reachable(const Sample& from, const Sample& to, double start, double dist
   return rate2 <= start2 + by_change ? z : three_quarters(start2 + by_change);
 }
 
-/// w of every sample. On a straight stretch at its highest speed nothing happens but near where it
-/// gets there: cells grow with the distance from it.
+/// w of every sample. On a straight stretch at its highest speed, and at the highest speed of the
+/// tool, nothing happens but near where it gets there: cells grow with the distance from it.
 void set_widths(const Course& course, Samples& samples) {
   constexpr double kCruise = 0.5;
   for (Sample& sample : samples.all) sample.width = kGrowth * sample.z / sample.growth;
   for (size_t k = 0; k < course.stretches().size(); ++k) {
-    const Stretch& stretch = course.stretches()[k];
-    if (!stretch.straight) continue;
-    const double top = stretch.rate_limit * std::sqrt(stretch.rate_limit);
     const size_t begin = samples.first[k], end = samples.first[k + 1];
-    double first = kInfinite, last = 0.0;  // where it has its highest speed
-    for (size_t i = begin; i < end; ++i) {
-      if (samples.all[i].z < top) continue;
-      first = std::min(first, samples.all[i].s);
-      last = samples.all[i].s;
-    }
-    for (size_t i = begin; i < end; ++i) {
-      Sample& sample = samples.all[i];
-      sample.width += kCruise * std::max(0.0, std::min(sample.s - first, last - sample.s));
+    for (size_t first = begin; first < end; ++first) {
+      if (!samples.all[first].cruises()) continue;
+      size_t last = first;
+      while (last + 1 < end && samples.all[last + 1].cruises()) ++last;
+      for (size_t i = first; i <= last; ++i) {
+        Sample& sample = samples.all[i];
+        const double from = samples.all[first].s, to = samples.all[last].s;
+        sample.width += kCruise * std::min(sample.s - from, to - sample.s);
+      }
+      first = last;
     }
   }
 }
@@ -277,8 +293,8 @@ Grid make_grid(const Course& course) {
       from = start;
     }
     if (k + 1 == count) to -= end;
-    cut(samples, k, from, to, floor, stretch.straight ? 1 : 2, stretch.straight ? 64 : 16,
-        grid.cells);
+    cut(samples, k, from, to, floor, stretch.straight ? 1 : 2,
+        stretch.straight || stretch.tool != nullptr ? 64 : 16, grid.cells);
     if (k + 1 == count) grid.cells.push_back({k, to, stretch.length});
     grid.cells[begin].gear = stretch.gear;
   }

@@ -60,13 +60,26 @@ std::vector<Shares> BarrierProblem::shares(const SquareRate& rate) const {
       const AccelerationRows& rows = acceleration_rows_[r];
       worst = worst.max((rate[k].value * rows.b + rate[k].slope * rows.slope).abs());
     }
-    const Shares here{std::sqrt(rate[k].value / node.ceiling), worst.maxCoeff(), 0.0};
+    double acceleration = worst.maxCoeff();
+    for (size_t r = node.first_cone; r < node.last_cone; ++r) {
+      const ConeRow& cone = cones_[r];
+      acceleration =
+          std::max(acceleration, std::hypot(rate[k].value * cone.b + rate[k].slope * cone.slope,
+                                            rate[k].value * cone.normal));
+    }
+    const Shares here{std::sqrt(rate[k].value / node.ceiling), acceleration, 0.0};
     shares[k].include(here);
     shares[k + 1].include(here);
   }
   for (size_t k = 1; k + 1 < cells_.size(); ++k) {
     shares[k].jerk = jerk_share(k, rate);
     const CellRows& cell = cells_[k];
+    for (size_t r = cell.first_cone; r < cell.last_cone; ++r) {
+      const Four x = cell.numbers(rate[k - 1], rate[k]);
+      shares[k].acceleration =
+          std::max(shares[k].acceleration,
+                   std::hypot(dot(cell_cones_[r].along, x), dot(cell_cones_[r].across, x)));
+    }
     if (!cell.straight()) continue;
     const double slope = dot(kMiddle.slope, cell.numbers(rate[k - 1], rate[k]));
     shares[k].acceleration =

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "trajectory/path_timing_barrier.hpp"
+#include "trajectory/path_timing_tool.hpp"
 
 namespace viapoint::path_timing {
 
@@ -60,6 +61,19 @@ void BarrierProblem::add_cell(const Cell& cell, bool inner) {
     }
   }
   rows.end = jerk_rows_.size();
+  rows.first_cone = cell_cones_.size();
+  if (inner && stretch.tool != nullptr) {
+    for (const ToolCone& cone : tool_at(stretch, cell.s0 + kMiddle.at * h).cones) {
+      if (!cone.counts()) continue;
+      CellCone row;
+      for (size_t i = 0; i < 4; ++i) {
+        row.along[i] = cone.b * kMiddle.value[i] + 0.5 / h * cone.slope * kMiddle.slope[i];
+        row.across[i] = cone.normal * kMiddle.value[i];
+      }
+      cell_cones_.push_back(row);
+    }
+  }
+  rows.last_cone = cell_cones_.size();
   cells_.push_back(rows);
 }
 
@@ -68,13 +82,15 @@ void BarrierProblem::add_node(const Cell& before, const Cell& after) {
   const Stretch& next = course_->stretches()[after.piece];
   Node node;
   node.begin = acceleration_rows_.size();
+  node.first_cone = cones_.size();
   node.ceiling = std::min(rate_ceiling(before.piece, before.s1),
                           rate_ceiling(after.piece, after.s0) / (after.gear * after.gear));
   // A knot between pieces that differ in their limits obeys the stricter: rows of both. Otherwise
   // one will do, and best that of a straight piece.
   const bool knot = before.piece != after.piece;
   const bool same = here.geometry->scale == next.geometry->scale &&
-                    here.geometry->rate_change_limit == next.geometry->rate_change_limit;
+                    here.geometry->rate_change_limit == next.geometry->rate_change_limit &&
+                    here.geometry->tool == next.geometry->tool;
   if (!knot || !same || here.straight || !next.straight) {
     add_acceleration_rows(before.piece, before.s1, 1.0);
   }
@@ -82,6 +98,7 @@ void BarrierProblem::add_node(const Cell& before, const Cell& after) {
     add_acceleration_rows(after.piece, after.s0, after.gear);
   }
   node.end = acceleration_rows_.size();
+  node.last_cone = cones_.size();
   nodes_.push_back(node);
 }
 
@@ -98,6 +115,12 @@ void BarrierProblem::add_acceleration_rows(size_t stretch, double s, double gear
     acceleration_rows_.push_back(
         {gear * gear * pair(rates.acceleration2), 0.5 * gear * pair(rates.acceleration1)});
   }
+  if (here.tool == nullptr) return;
+  for (const ToolCone& cone : tool_at(here, s).cones) {
+    if (cone.counts()) {
+      cones_.push_back({gear * gear * cone.b, 0.5 * gear * cone.slope, gear * gear * cone.normal});
+    }
+  }
 }
 
 double BarrierProblem::rate_ceiling(size_t stretch, double s) const {
@@ -108,6 +131,7 @@ double BarrierProblem::rate_ceiling(size_t stretch, double s) const {
     course_->rates(stretch, s, rates);
     for (const double share : rates.velocity) v = std::max(v, std::abs(share));
   }
+  if (here.tool != nullptr) v = std::max(v, tool_at(here, s).velocity);
   return 1.0 / (v * v);
 }
 
@@ -132,6 +156,14 @@ double BarrierProblem::ramp_ceiling(size_t stretch, double from, double to, bool
       j = std::max(
           j, std::abs(rates.jerk3[i] * rate * rate * rate + 3.0 * rates.jerk2[i] * rate * change +
                       rates.jerk1[i] * 2.0 / (9.0 * s1 * s1)));
+    }
+    if (here.tool != nullptr) {
+      const ToolPlace tool = tool_at(here, leaving ? from + along : to - along);
+      v = std::max(v, tool.velocity * rate);
+      for (const ToolCone& cone : tool.cones) {
+        a = std::max(
+            a, std::hypot(cone.b * rate * rate + cone.slope * change, cone.normal * rate * rate));
+      }
     }
     ceiling = std::min({ceiling, 1.0 / (v * v), 1.0 / a, 1.0 / std::cbrt(j * j)});
   }

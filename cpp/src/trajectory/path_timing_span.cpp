@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "trajectory/path_timing_tool.hpp"
 #include "trajectory/rate_bounds.hpp"
 #include "viapoint/core/bernstein_bounds.hpp"
 
@@ -44,9 +45,11 @@ Shares straight_shares(const TimedSpan& span, const Stretch& stretch, double sla
   return shares;
 }
 
-/// All joints' motion q(u(t)) against their limits, over `cells` parts of the span.
+/// The motion q(u(t)) of all joints, and of the tool, against their limits, over `cells` parts of
+/// the span.
 ShareBounds curved_shares(const Course& course, const TimedSpan& span, int cells) {
-  const auto& q = course.stretches()[span.piece].geometry->coefficients;
+  const Stretch& stretch = course.stretches()[span.piece];
+  const auto& q = stretch.geometry->coefficients;
   ShareBounds bounds;
   const int groups = (cells + TimingSamples::kMostParts - 1) / TimingSamples::kMostParts;
   for (int group = 0; group < groups; ++group) {
@@ -62,6 +65,11 @@ ShareBounds curved_shares(const Course& course, const TimedSpan& span, int cells
       bounds.proven.include({(reached.velocity + between.velocity) * per.velocity,
                              (reached.acceleration + between.acceleration) * per.acceleration,
                              (reached.jerk + between.jerk) * per.jerk});
+    }
+    if (stretch.tool != nullptr) {
+      const ToolBounds tool = tool_bounds(*stretch.tool, samples);
+      bounds.reached.include(tool.reached);
+      bounds.proven.include(tool.proven);
     }
   }
   return bounds;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "trajectory/path_timing_tool.hpp"
 #include "viapoint/core/bernstein_bounds.hpp"
 #include "viapoint/core/error.hpp"
 #include "viapoint/profile/jerk_profile.hpp"
@@ -43,15 +44,24 @@ RateState advanced(const RateState& from, double jerk, double t) {
 
 }  // namespace
 
-UniformCeilings uniform_ceilings(const JointPath& path, const JointLimits& limits) {
+UniformCeilings uniform_ceilings(const JointPath& path, const JointLimits& limits,
+                                 std::span<const ToolRates> tool) {
   const int n = limits.joints();
   // Bounds of |q'|, |q''|, |q'''| in shares: over the limit and over the piece's scale.
   JointVector first_v = JointVector::Zero(n), first_a = first_v, first_j = first_v;
   JointVector second_a = first_v, second_j = first_v, third_j = first_v;
   double rate = std::numeric_limits<double>::infinity(), change = rate, jerk = rate;
-  for (const JointPiece& piece : path.pieces()) {
+  ToolCeilings most;
+  for (size_t k = 0; k < path.pieces().size(); ++k) {
+    const JointPiece& piece = path.pieces()[k];
     rate = std::min(rate, piece.rate_limit);
     change = std::min(change, piece.rate_change_limit);
+    if (!tool.empty() && tool[k].limits.any()) {
+      const ToolCeilings here = tool_ceilings(tool[k], piece.length);
+      most.velocity = std::max(most.velocity, here.velocity);
+      most.acceleration1 = std::max(most.acceleration1, here.acceleration1);
+      most.acceleration2 = std::max(most.acceleration2, here.acceleration2);
+    }
     for (int i = 0; i < n; ++i) {
       const double d1 = largest_derivative<1>(piece, i) / piece.scale;
       const double d2 = largest_derivative<2>(piece, i) / piece.scale;
@@ -74,6 +84,11 @@ UniformCeilings uniform_ceilings(const JointPath& path, const JointLimits& limit
     if (first_v[i] > 0.0) rate = std::min(rate, 1.0 / first_v[i]);
     if (second_a[i] > 0.0) rate = std::min(rate, std::sqrt(0.5 / second_a[i]));
     if (third_j[i] > 0.0) rate = std::min(rate, std::cbrt(1.0 / 3.0 / third_j[i]));
+  }
+  if (most.velocity > 0.0) rate = std::min(rate, 1.0 / most.velocity);
+  if (most.acceleration2 > 0.0) rate = std::min(rate, std::sqrt(0.5 / most.acceleration2));
+  if (most.acceleration1 > 0.0) {
+    change = std::min(change, (1.0 - most.acceleration2 * rate * rate) / most.acceleration1);
   }
   for (int i = 0; i < n; ++i) {
     if (first_a[i] > 0.0) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "trajectory/path_timing_span.hpp"
@@ -15,9 +16,11 @@ struct UniformCeilings {
 };
 
 /// Ceilings that keep every limit wherever the section is and whatever ṡ, s̈, s⃛ are within them,
-/// from bounds of |q'|, |q''|, |q'''|.
+/// from bounds of |q'|, |q''|, |q'''| and of the tool's rates.
+/// @param tool one a piece of the path, or none
 /// @throws MotionError(kZeroLength) if no joint moves
-[[nodiscard]] UniformCeilings uniform_ceilings(const JointPath& path, const JointLimits& limits);
+[[nodiscard]] UniformCeilings uniform_ceilings(const JointPath& path, const JointLimits& limits,
+                                               std::span<const ToolRates> tool);
 
 /// Ceilings of a section along which q' is constant and all pieces share their limits; nothing for
 /// any other. Under these the seven-phase move is the quickest there is.

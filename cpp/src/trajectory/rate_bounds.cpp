@@ -60,6 +60,14 @@ TimingSamples::TimingSamples(const Quintic& timing, double duration, int parts, 
   chord_ = step * step / 8.0;
 }
 
+double TimingSamples::largest(std::size_t order) const {
+  double most = 0.0;
+  for (std::size_t k = 0; k <= static_cast<std::size_t>(parts_); ++k) {
+    most = std::max(most, std::abs(at_[k][order]));
+  }
+  return most;
+}
+
 Rates TimingSamples::reached(const Quintic& c) const {
   Rates most;
   for (std::size_t k = 0; k <= static_cast<std::size_t>(parts_); ++k) {
@@ -93,6 +101,43 @@ Rates TimingSamples::between(const Quintic& path) const {
   const double jerk = p[3] * w11 * w[1] + 3 * p[2] * w[1] * w[2] + p[1] * w[3];
   return {chord_ * third + kRounding * velocity, chord_ * fourth + kRounding * acceleration,
           chord_ * fifth + kRounding * jerk};
+}
+
+Rates TimingSamples::reached(const VectorQuintic& w) const {
+  double velocity = 0.0, acceleration = 0.0;  // squared
+  for (std::size_t k = 0; k <= static_cast<std::size_t>(parts_); ++k) {
+    const double u = at_[k][0], first = at_[k][1], second = at_[k][2];
+    double speed = 0.0, change = 0.0;
+    for (const Quintic& c : w) {
+      const double value = c[0] + u * (c[1] + u * (c[2] + u * (c[3] + u * (c[4] + u * c[5]))));
+      const double slope = c[1] + u * (2 * c[2] + u * (3 * c[3] + u * (4 * c[4] + u * 5 * c[5])));
+      const double a = slope * first * first + value * second;
+      speed += value * value;
+      change += a * a;
+    }
+    velocity = std::max(velocity, speed * first * first);
+    acceleration = std::max(acceleration, change);
+  }
+  return {std::sqrt(velocity), std::sqrt(acceleration), 0.0};
+}
+
+Rates TimingSamples::between(const VectorQuintic& w) const {
+  std::array<double, 4> p{};  // lengths of the derivatives 0..3 of w by u
+  for (const Quintic& axis : w) {
+    const Quintic middle = derivatives(axis, middle_);
+    Quintic bound = derivative_bounds(middle, radius_);
+    bound[0] = std::abs(middle[0]) + radius_ * bound[1];
+    for (std::size_t k = 0; k < p.size(); ++k) p[k] += bound[k] * bound[k];
+  }
+  for (double& value : p) value = std::sqrt(value);
+  const Quintic& t = bound_;
+  const double t11 = t[1] * t[1];
+  const double third = p[2] * t11 * t[1] + 3 * p[1] * t[1] * t[2] + p[0] * t[3];
+  const double fourth = p[3] * t11 * t11 + 6 * p[2] * t11 * t[2] +
+                        p[1] * (4 * t[1] * t[3] + 3 * t[2] * t[2]) + p[0] * t[4];
+  constexpr double kRounding = 64.0 * std::numeric_limits<double>::epsilon();
+  return {chord_ * third + kRounding * p[0] * t[1],
+          chord_ * fourth + kRounding * (p[1] * t11 + p[0] * t[2]), 0.0};
 }
 
 }  // namespace viapoint

@@ -15,6 +15,9 @@ namespace viapoint {
 /// Of a quintic: its coefficients, or its derivatives 0..5, not divided by k!
 using Quintic = std::array<double, 6>;
 
+/// A vector by its quintics on three axes.
+using VectorQuintic = std::array<Quintic, 3>;
+
 struct Rates {
   double velocity = 0.0, acceleration = 0.0, jerk = 0.0;
 };
@@ -35,7 +38,19 @@ class TimingSamples {
   /// What they may be more than that between the instants, and for rounding.
   [[nodiscard]] Rates between(const Quintic& path) const;
 
+  /// The same of the vectors w(u) u̇ and d/dτ (w(u) u̇), by their lengths, as velocity and
+  /// acceleration.
+  [[nodiscard]] Rates reached(const VectorQuintic& w) const;
+  [[nodiscard]] Rates between(const VectorQuintic& w) const;
+  /// |u̇| and |ü|: the largest at the instants, and bounds.
+  [[nodiscard]] double reached_rate() const { return largest(1); }
+  [[nodiscard]] double reached_change() const { return largest(2); }
+  [[nodiscard]] double most_rate() const { return bound_[1]; }
+  [[nodiscard]] double most_change() const { return bound_[2]; }
+
  private:
+  [[nodiscard]] double largest(std::size_t order) const;
+
   int parts_;
   std::array<Quintic, kMostParts + 1> at_;  ///< derivatives by τ
   Quintic bound_{};                         ///< of the magnitudes of derivatives 1..5 by τ

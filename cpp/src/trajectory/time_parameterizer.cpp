@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
+#include <utility>
 
 #include "trajectory/path_timing_barrier.hpp"
 #include "trajectory/path_timing_grid.hpp"
@@ -67,6 +69,16 @@ std::vector<bool> too_coarse(const Course& course, const std::vector<TimedSpan>&
   return coarse;
 }
 
+/// Where the tool is to keep a speed, it should be near it: the barriers of the ceilings get less
+/// and less weight.
+bool press_on_ceilings(BarrierProblem& problem, SquareRate& rate, double weight) {
+  for (double share = 0.2; share > 0.03; share *= 0.2) {
+    problem.set_ceiling_weight(share);
+    if (!problem.solve(rate, weight, weight)) return false;
+  }
+  return true;
+}
+
 /// The near-optimal timing; empty if the method does not get there.
 Timing quickest(const Course& course) {
   constexpr double kFirstWeight = 0.1, kLastWeight = 0.006;
@@ -85,6 +97,7 @@ Timing quickest(const Course& course) {
     problem->set_limit_factors(corrections(*problem, rate, course, problem->spans(rate), kUsed));
     // What it has when the numbers give out is a motion too.
     solved = solved && problem->solve(rate, kLastWeight, kLastWeight);
+    if (course.limits_tool()) solved = solved && press_on_ceilings(*problem, rate, kLastWeight);
     Timing timing{problem->spans(rate), kInfinite};
     if (std::all_of(timing.spans.begin(), timing.spans.end(), goes_forward)) {
       timing.stretch = prove(course, timing.spans, kProofSlack).stretch();
@@ -102,11 +115,19 @@ Timing quickest(const Course& course) {
   }
 }
 
+TimedPath to_timed_path(const JointPath& path, const std::vector<TimedSpan>& spans) {
+  TimedPath timed{to_pieces(path, spans), {}};
+  timed.origin.reserve(spans.size());
+  for (const TimedSpan& span : spans) timed.origin.push_back(span.piece);
+  return timed;
+}
+
 /// Seven phases under bounds that hold all along the section.
-std::vector<TimedSpan> slowest(const Course& course, const JointLimits& limits) {
+std::vector<TimedSpan> slowest(const Course& course, const JointLimits& limits,
+                               std::span<const ToolRates> tool) {
   const JointPath path = course.in_one_scale();
   // The ceilings are bounds already, so proof can only shorten what they give.
-  auto spans = seven_phases(path, within_range(uniform_ceilings(path, limits), path, limits));
+  auto spans = seven_phases(path, within_range(uniform_ceilings(path, limits, tool), path, limits));
   stretch_time(spans, std::min(1.0, kMargin * prove(course, spans, kProofSlack).stretch()));
   return spans;
 }
@@ -114,25 +135,30 @@ std::vector<TimedSpan> slowest(const Course& course, const JointLimits& limits) 
 }  // namespace
 }  // namespace path_timing
 
-std::vector<TrajectoryPiece> parameterize(const JointPath& path, const JointLimits& limits) {
+TimedPath parameterize(const JointPath& path, const JointLimits& limits,
+                       std::span<const ToolRates> tool) {
   using namespace path_timing;
   require_valid(path, limits);
-  const Course course(path, limits);
-  if (const auto ceilings = straight_ceilings(path, limits)) {
+  const Course course(path, limits, tool);
+  if (const auto ceilings = course.limits_tool() ? std::nullopt : straight_ceilings(path, limits)) {
     auto spans = seven_phases(path, within_range(*ceilings, path, limits));
     stretch_time(spans, prove(course, spans, kExact).stretch() * kMargin);
-    return to_pieces(path, spans);
+    return to_timed_path(path, spans);
   }
   Timing quick = quickest(course);
   const double duration = total_duration(quick.spans);
   if (quick.stretch <= kGoodEnough && in_range(duration)) {
-    return to_pieces(path, quick.spans);
+    return to_timed_path(path, quick.spans);
   }
-  auto spans = slowest(course, limits);
+  auto spans = slowest(course, limits, tool);
   if (std::isfinite(quick.stretch) && duration < total_duration(spans)) {
     spans = std::move(quick.spans);
   }
-  return to_pieces(path, spans);
+  return to_timed_path(path, spans);
+}
+
+std::vector<TrajectoryPiece> parameterize(const JointPath& path, const JointLimits& limits) {
+  return parameterize(path, limits, {}).pieces;
 }
 
 }  // namespace viapoint

@@ -42,6 +42,7 @@ __all__: list[str] = [
     "Target",
     "TcpCalibration",
     "ToolCalibration",
+    "ToolExtrema",
     "VelocityEllipsoid",
     "VirtualJog",
     "WantedLeg",
@@ -650,6 +651,9 @@ class MoveOptions:
         *,
         speed: typing.SupportsFloat | typing.SupportsIndex | None = None,
         acceleration: typing.SupportsFloat | typing.SupportsIndex | None = None,
+        angular_speed: typing.SupportsFloat | typing.SupportsIndex | None = None,
+        angular_acceleration: typing.SupportsFloat | typing.SupportsIndex | None = None,
+        process_speed: typing.SupportsFloat | typing.SupportsIndex | None = None,
         scale: typing.SupportsFloat | typing.SupportsIndex | None = None,
         zone: str = "fine",
         size: typing.SupportsFloat | typing.SupportsIndex = 0.0,
@@ -804,6 +808,31 @@ class Extremum:
         Largest magnitude [SI, rad].
         """
 
+class ToolExtrema:
+    """
+    The worst of the tool, against the limits that each move gives it; zero where no move limits it.
+    """
+    @property
+    def acceleration(self) -> Extremum:
+        """
+        Of the tool point [m/s²].
+        """
+    @property
+    def angular_acceleration(self) -> Extremum:
+        """
+        [rad/s²]
+        """
+    @property
+    def angular_speed(self) -> Extremum:
+        """
+        [rad/s]
+        """
+    @property
+    def speed(self) -> Extremum:
+        """
+        Of the tool point [m/s].
+        """
+
 class Certificate:
     """
     Proven bounds over a whole motion.
@@ -883,6 +912,11 @@ class Certificate:
     def start_speed(self) -> float:
         """
         Largest |qd| at the start.
+        """
+    @property
+    def tool(self) -> ToolExtrema:
+        """
+        Speeds and accelerations of the tool, where moves limit them.
         """
     @property
     def velocity(self) -> list[Extremum]:

@@ -104,6 +104,10 @@ MotionProgram random_program(const RobotModel& robot, std::mt19937& random) {
     if (random() % 3 == 0) options.scale = std::pow(10.0, -4.0 * uniform(random));
     if (random() % 3 == 0) options.speed = std::pow(10.0, 1.0 - 5.0 * uniform(random));
     if (random() % 3 == 0) options.acceleration = std::pow(10.0, 1.0 - 4.0 * uniform(random));
+    if (random() % 5 == 0) options.angular_speed = std::pow(10.0, 1.0 - 4.0 * uniform(random));
+    if (random() % 5 == 0) {
+      options.angular_acceleration = std::pow(10.0, 2.0 - 4.0 * uniform(random));
+    }
     if (random() % 3 == 0) {
       script.add(random_curve_move(robot, script.program().start, q, random), options);
     } else if (random() % 2 == 0) {

@@ -134,6 +134,9 @@ MotionProgram random_program(std::mt19937& random) {
     }
     if (random() % 2 == 0) step.options.speed = 0.1 / 3.0;
     if (random() % 2 == 0) step.options.acceleration = 1.0 / 7.0;
+    if (random() % 2 == 0) step.options.angular_speed = 2.0 / 7.0;
+    if (random() % 2 == 0) step.options.angular_acceleration = 3.0 / 7.0;
+    if (random() % 2 == 0) step.options.process_speed = 4.0 / 7.0;
     if (random() % 2 == 0) step.options.scale = 1.0 / 3.0;
     step.options.zone = {static_cast<ZoneKind>(random() % 4), 0.0};
     if (step.options.zone.kind != ZoneKind::kFine) step.options.zone.size = 0.1 / 7.0;

@@ -25,6 +25,23 @@ enum class PieceKind {
   kBlend,      ///< a corner
 };
 
+/// What the tool may do along a piece, over the joints' limits; infinite: all that these allow.
+struct ToolLimits {
+  static constexpr double kNone = std::numeric_limits<double>::infinity();
+  double speed = kNone;                 ///< of the tool point [m/s]
+  double acceleration = kNone;          ///< of the tool point [m/s²]
+  double angular_speed = kNone;         ///< of the tool [rad/s]
+  double angular_acceleration = kNone;  ///< of the tool [rad/s²]
+  /// `speed` is to be kept wherever the limits allow, not only not to be exceeded.
+  bool hold_speed = false;
+
+  [[nodiscard]] bool any() const {
+    return speed < kNone || acceleration < kNone || turns();
+  }
+  [[nodiscard]] bool turns() const { return angular_speed < kNone || angular_acceleration < kNone; }
+  bool operator==(const ToolLimits&) const = default;
+};
+
 /// One quintic piece: q(s) = Σ_k coefficients.row(k) u^k with u = s / length in [0, 1].
 struct JointPiece {
   QuinticCoefficients coefficients;
@@ -37,6 +54,7 @@ struct JointPiece {
   /// Share of all joint limits this piece may use, in (0, 1] (velocity; acceleration and jerk keep
   /// their limits times the same share).
   double scale = 1.0;
+  ToolLimits tool;
   double position_deviation = 0.0;  ///< proven distance of the tool from the wanted curve [m]
   double angle_deviation = 0.0;     ///< proven [rad]
 

@@ -2,11 +2,13 @@
 /// From a program to a proven trajectory, and the report of everything that is wrong with it.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "viapoint/core/error.hpp"
 #include "viapoint/kinematics/robot_model.hpp"
+#include "viapoint/path/joint_path.hpp"
 #include "viapoint/program/motion_program.hpp"
 #include "viapoint/trajectory/trajectory.hpp"
 
@@ -22,6 +24,28 @@ struct CornerOutcome {
   std::string reason;    ///< why shrunk or stopped; empty where used as asked
 };
 
+/// Limits of the tool that hold for a while.
+struct ToolSpan {
+  int move = 0;
+  double from = 0.0, to = 0.0;  ///< [s] of the motion
+  ToolLimits limits;
+};
+
+/// A stretch of motion in which a move could not hold its process speed.
+struct ProcessStretch {
+  int move = 0;
+  double from = 0.0, to = 0.0;  ///< [s] of the motion
+  /// Way of the tool point since the process speed began to be asked for [m].
+  double from_length = 0.0, to_length = 0.0;
+  double process_speed = 0.0;  ///< asked for [m/s]
+  double lowest_speed = 0.0;   ///< [m/s]
+  /// What rules there: "rest" where the arm starts or stops in it, else the limit that holding the
+  /// speed would break most, or that is used most: "velocity", "acceleration", "jerk" of a joint,
+  /// "tool acceleration", "tool angular speed" or "tool angular acceleration".
+  std::string limit;
+  std::optional<int> joint;
+};
+
 /// All problems of a program at once, in program order.
 struct Report {
   std::vector<Problem> problems;
@@ -33,6 +57,8 @@ struct Report {
 struct PlannedMotion {
   Trajectory trajectory;
   std::vector<CornerOutcome> corners;
+  std::vector<ProcessStretch> process_stretches;  ///< in the order of time
+  std::vector<ToolSpan> tool_spans;               ///< in the order of time
   Report report;  ///< warnings; for timed programs also the limits they break
 };
 

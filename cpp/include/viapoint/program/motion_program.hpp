@@ -126,6 +126,11 @@ struct MoveOptions {
   std::optional<double> acceleration;  ///< tool [m/s²], Cartesian moves
   std::optional<double> scale;         ///< share of all joint limits, (0, 1]
   Zone zone;
+  std::optional<double> angular_speed = std::nullopt;  ///< of the tool [rad/s], Cartesian moves
+  std::optional<double> angular_acceleration =
+      std::nullopt;  ///< of the tool [rad/s²], Cartesian moves
+  /// Tool speed to be kept wherever the limits allow, never more [m/s]; instead of `speed`.
+  std::optional<double> process_speed = std::nullopt;
 };
 
 struct SourceLine {

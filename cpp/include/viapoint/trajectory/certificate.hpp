@@ -20,6 +20,15 @@ struct Extremum {
   int move = 0;        ///< program step it happens in
 };
 
+/// The worst of the tool over a whole motion, against the limits that each move gives it: the
+/// largest share, the value of that share, and where. Zero where no move limits it.
+struct ToolExtrema {
+  Extremum speed;                 ///< of the tool point [m/s]
+  Extremum acceleration;          ///< [m/s²]
+  Extremum angular_speed;         ///< [rad/s]
+  Extremum angular_acceleration;  ///< [rad/s²]
+};
+
 /// Bounds over the whole of a motion, per joint where that makes sense.
 struct Certificate {
   std::vector<Extremum> velocity, acceleration, jerk;  ///< (n,)
@@ -29,6 +38,7 @@ struct Certificate {
   double start_acceleration = 0.0, end_acceleration = 0.0;
   /// Largest step of q, q̇, q̈ between neighbouring pieces.
   double position_jump = 0.0, velocity_jump = 0.0, acceleration_jump = 0.0;
+  ToolExtrema tool;              ///< proven; filled in by the planner
   double path_deviation = 0.0;   ///< proven, outside zones [m]; filled in by the planner
   double angle_deviation = 0.0;  ///< proven, outside zones [rad]; filled in by the planner
   double zone_deviation = 0.0;   ///< largest cut of a corner at the tool [m]; by the planner

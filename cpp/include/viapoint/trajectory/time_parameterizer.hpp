@@ -3,10 +3,13 @@
 /// acceleration and jerk of every joint, between samples too.
 #pragma once
 
+#include <cstddef>
+#include <span>
 #include <vector>
 
 #include "viapoint/core/joint_limits.hpp"
 #include "viapoint/path/joint_path.hpp"
+#include "viapoint/path/tool_rates.hpp"
 #include "viapoint/trajectory/trajectory_piece.hpp"
 
 namespace viapoint {
@@ -27,5 +30,18 @@ namespace viapoint {
 /// that hold all along the section is returned. Real-time: not. Cost: linear in pieces.
 [[nodiscard]] std::vector<TrajectoryPiece> parameterize(const JointPath& path,
                                                         const JointLimits& limits);
+
+/// A section with its timing.
+struct TimedPath {
+  std::vector<TrajectoryPiece> pieces;
+  std::vector<std::size_t> origin;  ///< the path piece that each lies in
+};
+
+/// The same with the tool held, too: speed, acceleration, angular speed and angular acceleration
+/// of every piece that limits them, with every share <= 1 + 1e-9 and the tool rates' error counted
+/// against the limits.
+/// @param tool one a piece of the path (with_tool_rates()), or none
+[[nodiscard]] TimedPath parameterize(const JointPath& path, const JointLimits& limits,
+                                     std::span<const ToolRates> tool);
 
 }  // namespace viapoint

@@ -1,0 +1,34 @@
+/// @file
+/// Holds the finished pieces of a motion against what the program allows the tool.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "viapoint/kinematics/forward_kinematics.hpp"
+#include "viapoint/planning/motion_planner.hpp"
+#include "viapoint/trajectory/tool_certificate.hpp"
+#include "viapoint/trajectory/trajectory_piece.hpp"
+
+namespace viapoint::planning {
+
+class ToolProof {
+ public:
+  /// @param limits one a piece, or none where the tool is not limited
+  /// @param time where the first piece begins [s]
+  void add(const ForwardKinematics& arm, std::span<const TrajectoryPiece> pieces,
+           std::span<const ToolLimits> limits, double time);
+  [[nodiscard]] const ToolExtrema& extrema() const { return certifier_.extrema(); }
+  /// Which limits hold when.
+  [[nodiscard]] std::vector<ToolSpan> take_spans() { return std::move(spans_); }
+
+ private:
+  ToolCertifier certifier_;
+  std::vector<ToolSpan> spans_;
+};
+
+/// What the extrema break, worst first.
+[[nodiscard]] std::vector<Problem> problems_of(const ToolExtrema& extrema);
+
+}  // namespace viapoint::planning
