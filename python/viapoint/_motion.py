@@ -13,6 +13,7 @@ from ._arguments import ArrayLike, Vector, number, numbers_of
 from ._least_dexterity import LeastDexterity, least_dexterity
 from ._report import Report
 from ._robot import Robot
+from ._ruling import Rule
 from ._samples import Samples
 from .errors import BadArgumentError
 
@@ -153,6 +154,17 @@ class Motion:
         # mypy takes a column for a possible robot; the extension gives t, q and derivatives only.
         return Samples(**columns, robot=self.robot, tools=self.tools)  # type: ignore[arg-type]
 
+    @cached_property
+    def rules(self) -> tuple[Rule, ...]:
+        """Which limit of which joint holds the motion back, stretch by stretch in time.
+
+        Each has ``start`` and ``end`` [s], ``kind`` ("velocity", "acceleration", "jerk"; "other"
+        where none is at 95 % of what the move may use; "rest"), ``joint`` and ``share``.
+        """
+        from ._motion_file import motion_rules
+
+        return tuple(motion_rules(self))
+
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the motion and its proof into a file that ``viapoint verify`` proves anew.
 
@@ -172,16 +184,18 @@ class Motion:
 
         save_motion(self, path)
 
-    def plot(self, path: str | os.PathLike[str], what: str = "joints") -> None:
+    def plot(self, path: str | os.PathLike[str], what: str = "proof") -> None:
         """Draw the motion into a picture file (.png, .svg or .pdf).
 
         Parameters
         ----------
         path : str or path
             The file to write.
-        what : {"joints", "tool", "path"}
-            Joint angles, velocities, accelerations and jerks against their limits; x, y, z of the
-            tool with velocity and acceleration; or the tool's path in 3-D with approach vectors.
+        what : {"proof", "joints", "tool", "path"}
+            The tool's path with its zones, every joint's share of its limits with what limits the
+            motion when, and the deviation from the lines and curves; joint angles, velocities,
+            accelerations and jerks against their limits; x, y, z of the tool with velocity and
+            acceleration; or the tool's path in 3-D with approach vectors.
 
         Raises
         ------

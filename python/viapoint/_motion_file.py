@@ -10,7 +10,7 @@ import numpy as np
 
 from . import _core
 from ._arguments import Vector
-from ._ruling import KINDS, rules_of
+from ._ruling import KINDS, Rule, rules_of
 from ._stretches import Stretch, stretches_of
 from .errors import EmptyProgramError
 from .verifier import FORMAT, VERSION, seal
@@ -41,6 +41,14 @@ def motion_text(motion: Motion) -> bytes:
         else:
             lines.append(f"{name}: {_compact(value)}")
     return seal("{\n" + ",\n".join(lines))
+
+
+def motion_rules(motion: Motion) -> list[Rule]:
+    """Tell which limit rules when, as the file does."""
+    rows = json.loads(motion_text(motion))["certificate"]["rules"]
+    return [
+        Rule(row["from"], row["to"], row["kind"], row.get("joint"), row["share"]) for row in rows
+    ]
 
 
 class _Writer:

@@ -92,7 +92,7 @@ def write_pictures(motion: Motion, folder: Path, stem: str) -> list[Path]:
     with writing(folder):
         folder.mkdir(parents=True, exist_ok=True)
     files = []
-    for what in drawings_for(motion):
+    for what in ("proof", *drawings_for(motion)):
         files.append(folder / f"{stem}_{what}.png")
         save_plot(motion, files[-1], what)
     return files

@@ -13,6 +13,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from ._arguments import Vector, choice, writing
+from ._proof_plot import draw_proof
 from ._samples import Samples
 from .errors import BadArgumentError
 
@@ -34,13 +35,13 @@ ENDINGS = (".png", ".svg", ".pdf")
 
 def save_plot(motion: Motion, path: str | os.PathLike[str], what: str) -> None:
     """Draw one picture of a planned motion into a file."""
-    kind = choice(what, "what", ("joints", "tool", "path"))
+    kind = choice(what, "what", ("proof", "joints", "tool", "path"))
     if Path(path).suffix not in ENDINGS:
         raise BadArgumentError(
             f'path is "{os.fspath(path)}"; a picture ends in {", ".join(ENDINGS)}.'
         )
     samples = motion.sample(max(0.001, motion.duration / MOST_SAMPLES))
-    save_figure(DRAWINGS[kind](samples, motion), path)
+    save_figure((draw_proof if kind == "proof" else DRAWINGS[kind])(samples, motion), path)
 
 
 def save_figure(figure: Figure, path: str | os.PathLike[str]) -> None:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 KINDS = ("velocity", "acceleration", "jerk")
 LOOKS = 8
-RULES = 0.99
+RULES = 0.95
 """From this share on a limit counts as what holds the motion back."""
 
 

@@ -99,7 +99,7 @@ def test_check_is_virtual_and_the_script_notices_nothing(tmp_path):
 def test_plot_draws_without_motion(tmp_path):
     result = call("plot", write(tmp_path / "job.py", name="p", target=GOOD), "--out", "pictures")
     assert result.exit_code == 0, result.output
-    assert len(list((tmp_path / "pictures").glob("*.png"))) == 3
+    assert len(list((tmp_path / "pictures").glob("*.png"))) == 4
 
 
 def test_export_writes_programs_that_read_back(tmp_path):

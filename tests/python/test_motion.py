@@ -5,6 +5,7 @@ import pytest
 
 import viapoint as vp
 from viapoint import errors, mm
+from viapoint._proof_plot import draw_proof
 
 
 @pytest.fixture(scope="module")
@@ -180,12 +181,41 @@ def test_knots_across_a_joint_limit_are_refused(puma, abc):
     assert caught.value.share == pytest.approx(0.12, abs=0.01)  # textbook §3
 
 
-@pytest.mark.parametrize("what", ["joints", "tool", "path"])
+@pytest.mark.parametrize("what", ["proof", "joints", "tool", "path"])
 def test_pictures_are_drawn(motion, tmp_path, what):
     path = tmp_path / f"{what}.png"
     motion.plot(path, what)
     assert path.read_bytes().startswith(b"\x89PNG")
     assert path.stat().st_size > 20_000
+
+
+def test_the_picture_of_the_proof_shows_what_the_certificate_says(everything):
+    figure = draw_proof(everything.sample(0.005), everything)
+    rates = [ax for ax in figure.axes if "% of limit" in ax.get_ylabel()]
+    assert [ax.get_ylabel().split()[0] for ax in rates] == ["velocity", "acceleration", "jerk"]
+    certificate = everything.certificate
+    for ax, shares in zip(
+        rates,
+        (certificate.velocity_share, certificate.acceleration_share, certificate.jerk_share),
+        strict=True,
+    ):
+        drawn = max(np.nanmax(line.get_ydata(), initial=0.0) for line in ax.lines)
+        assert drawn == pytest.approx(100 * shares.max(), abs=1.0)
+    far = next(ax for ax in figure.axes if "µm" in ax.get_ylabel())
+    distance = np.nanmax(far.lines[0].get_ydata())
+    assert 0 < distance <= 1e6 * certificate.path_deviation
+    words = {text.get_text() for legend in figure.legends for text in legend.get_texts()}
+    assert {"velocity", "acceleration", "jerk", "rest", "zone, as used"} <= words
+
+
+def test_what_limits_a_joint_move_is_named_moment_by_moment():
+    robot = vp.joint_robot(1, velocity=[1.0], acceleration=[2.0], jerk=[10.0])
+    motion = vp.Program(robot, start=[0.0]).movej([3.0]).plan()
+    rules = motion.rules
+    kinds = [rule.kind for rule in rules if rule.end - rule.start > 0.05 and rule.joint == 0]
+    assert kinds == ["jerk", "acceleration", "jerk", "velocity", "jerk", "acceleration", "jerk"]
+    assert rules[0].start == 0.0
+    assert rules[-1].end == pytest.approx(motion.duration)
 
 
 def test_an_unknown_picture_is_refused(motion, tmp_path):

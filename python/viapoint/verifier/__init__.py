@@ -5,7 +5,9 @@ Only numpy and Python's own library are used, so that the folder also works alon
 """
 
 from ._findings import Finding, Proof, Verdict
-from ._motion_file import FORMAT, VERSION
+from ._motion_file import FORMAT, VERSION, MotionFile, read
+from ._samples import deviations
+from ._speed_checks import scales_of
 from ._strict_json import MotionFileError, seal
 from ._verify import verify, verify_bytes
 
@@ -13,9 +15,13 @@ __all__ = [
     "FORMAT",
     "VERSION",
     "Finding",
+    "MotionFile",
     "MotionFileError",
     "Proof",
     "Verdict",
+    "deviations",
+    "read",
+    "scales_of",
     "seal",
     "verify",
     "verify_bytes",

@@ -36,7 +36,7 @@ def check_deviation(motion: MotionFile, verdict: Verdict) -> None:
             verdict.findings.append(Finding("a tool curve for an arm without a chain"))
         return
     before = len(verdict.findings)
-    along = _Along(motion, motion.chain, curves)
+    along = Along(motion, motion.chain, curves)
     place = prove_below(
         along.positions, np.full(len(curves), motion.position_tolerance), along.breaks()
     )
@@ -50,7 +50,7 @@ def check_deviation(motion: MotionFile, verdict: Verdict) -> None:
             before,
         )
     before = len(verdict.findings)
-    along = _Along(motion, motion.chain, turns)
+    along = Along(motion, motion.chain, turns)
     turn = prove_below(along.angles, np.full(len(turns), motion.angle_tolerance), along.breaks())
     _judge(motion, turns, turn, "the tool turns away", motion.angle_tolerance, verdict)
     _judge_claim(motion, "angle_deviation", turn, motion.angle_tolerance, verdict)
@@ -70,7 +70,7 @@ def _leg(motion: MotionFile, path: int) -> Leg:
     return motion.legs[number]
 
 
-class _Along:
+class Along:
     """Paths beside the curves of their legs."""
 
     def __init__(self, motion: MotionFile, chain: Chain, paths: list[int]) -> None:
@@ -106,7 +106,7 @@ class _Along:
             curve = leg.position.jets(s, _span(leg.position, s_middle))
             return tool_point(self._chain, tool, q[..., columns]) - curve
 
-        return self._by_leg(items, middle, half, off)
+        return self.by_leg(items, middle, half, off)
 
     def angles(self, items: Indices, middle: Array, half: Array) -> tuple[Array, Array]:
         """Bound of the angle from the curve."""
@@ -122,7 +122,7 @@ class _Along:
             turn = tool_rotation(self._chain, tool, q[..., columns])
             return half_axis_off(curve, turn) if leg.hold == "axis" else relative_turn(curve, turn)
 
-        bound, reached = self._by_leg(items, middle, half, off)
+        bound, reached = self.by_leg(items, middle, half, off)
         # The vector part of a unit quaternion is the sine of half its angle, as long as half of
         # what unit vectors of that angle are apart.
         return (
@@ -130,7 +130,7 @@ class _Along:
             2.0 * np.arcsin(np.minimum(reached, 1.0)) * (1.0 - 1e-12),
         )
 
-    def _by_leg(
+    def by_leg(
         self, items: Indices, middle: Array, half: Array, off: Offsets
     ) -> tuple[Array, Array]:
         bound, reached = np.empty(len(items)), np.empty(len(items))
@@ -165,7 +165,7 @@ def _check_joints(motion: MotionFile, paths: list[int], verdict: Verdict) -> Non
     if not paths:
         return
     chain = Chain(np.zeros(0), np.zeros((0, 4, 4)), np.zeros((0, 3)))
-    along = _Along(motion, chain, paths)
+    along = Along(motion, chain, paths)
 
     def bounds(items: Indices, middle: Array, half: Array) -> tuple[Array, Array]:
         q = along.joints(items, middle, half)
@@ -175,7 +175,7 @@ def _check_joints(motion: MotionFile, paths: list[int], verdict: Verdict) -> Non
                 raise ValueError("no joints")
             return q[..., columns] - leg.joints.jets(s, _span(leg.joints, s_middle))
 
-        return along._by_leg(items, middle, half, off)
+        return along.by_leg(items, middle, half, off)
 
     worst = prove_below(bounds, np.full(len(paths), JOINT_SLACK), along.breaks(), parts=1)
     _judge(motion, paths, worst, "the joints leave their line or spline", JOINT_SLACK, verdict)
