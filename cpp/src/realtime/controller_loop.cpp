@@ -2,6 +2,7 @@
 
 #include <array>
 #include <mutex>
+#include <sstream>
 #include <string>
 #include <system_error>
 #include <thread>
@@ -26,7 +27,11 @@ class PoweredDrive {
  public:
   explicit PoweredDrive(std::unique_ptr<Drive> drive)
       : drive_(std::move(drive)), start_(drive_->enable()) {}
-  ~PoweredDrive() { drive_->release(); }
+  ~PoweredDrive() { release(); }
+  /// Takes the power off, once.
+  void release() {
+    if (!std::exchange(released_, true)) drive_->release();
+  }
   PoweredDrive(const PoweredDrive&) = delete;
   PoweredDrive& operator=(const PoweredDrive&) = delete;
 
@@ -36,6 +41,7 @@ class PoweredDrive {
  private:
   std::unique_ptr<Drive> drive_;
   Measurement start_;
+  bool released_ = false;
 };
 
 std::unique_ptr<Drive> checked(std::unique_ptr<Drive> drive, const JointLimits& limits,
@@ -69,7 +75,7 @@ struct ControllerLoop::Impl {
         powered(checked(std::move(drive), joint_limits, options)),
         clock(std::move(loop_clock)),
         channels(limits.joints()),
-        runner(powered.drive(), *clock, channels, limits, options.cycle, powered.start()) {
+        runner(powered.drive(), *clock, channels, limits, options, powered.start()) {
     if (powered.start().q.size() != limits.joints() || !powered.start().q.allFinite()) {
       throw MotionError(ErrorCode::kDriveFault,
                         "the drive does not tell where each joint stands after it was enabled");
@@ -110,7 +116,7 @@ struct ControllerLoop::Impl {
     if (jogs()) channels.jog.write(JointVector::Zero(limits.joints()));
     while (jogs()) std::this_thread::sleep_for(kCompanionPeriod);
     if (job == nullptr) return;
-    job->stop();
+    job->stop(StopCategory::kHold);
     while (!job->ended()) std::this_thread::sleep_for(kCompanionPeriod);
   }
 
@@ -121,9 +127,29 @@ struct ControllerLoop::Impl {
   }
 
   void require_no_fault() {
+    if (channels.released.load(std::memory_order_acquire)) {
+      throw MotionError(ErrorCode::kDriveFault, "the drive was released by a stop of category 1",
+                        {"connect again"});
+    }
     if (!channels.faulted.load(std::memory_order_acquire)) return;
-    throw MotionError(ErrorCode::kDriveFault, powered.drive().fault(),
+    throw MotionError(ErrorCode::kDriveFault, fault(),
                       {"clear the fault at the drive, then connect again"});
+  }
+
+  /// What has failed; empty while nothing has.
+  [[nodiscard]] std::string fault() {
+    if (!channels.faulted.load(std::memory_order_acquire)) return {};
+    const Breach& breach = channels.breach;
+    if (breach.kind == Breach::Kind::kDrive) return powered.drive().fault();
+    std::ostringstream text;
+    text << text_of(breach);
+    if (breach.kind == Breach::Kind::kPowerLost) {
+      text << ": " << powered.drive().fault() << "; the arm was measured last at";
+    } else {
+      text << "; the arm stopped " << (breach.path_is_held() ? "on" : "off") << " its path at";
+    }
+    for (const double q : channels.snapshot.read().measurement.q) text << ' ' << number_text(q);
+    return text.str();
   }
 
   [[nodiscard]] bool busy() const { return job != nullptr && !job->ended(); }
@@ -146,7 +172,8 @@ struct ControllerLoop::Impl {
       drain_log();
       if (spent != nullptr) {
         const bool fault = spent->state.load(std::memory_order_acquire) == RunState::kFault;
-        present_job()->end(fault ? powered.drive().fault() : std::string());
+        if (channels.released.load(std::memory_order_acquire)) powered.release();
+        present_job()->end(fault ? fault_of_run() : std::string());
       }
       if (clock->is_virtual()) {
         std::this_thread::sleep_for(kVirtualCompanionPeriod);
@@ -154,6 +181,11 @@ struct ControllerLoop::Impl {
         std::this_thread::sleep_for(kCompanionPeriod);
       }
     }
+  }
+
+  /// Of a run that came back as failed: after a release nothing has, it was only refused.
+  [[nodiscard]] std::string fault_of_run() {
+    return channels.faulted.load(std::memory_order_acquire) ? fault() : "the drive was released";
   }
 
   void drain_log() {
@@ -220,9 +252,10 @@ void ControllerLoop::jog(const JointVector& velocity) {
   const std::lock_guard lock(impl_->admission);
   impl_->require_no_fault();
   impl_->await_log_of_ended_run();
-  if (impl_->busy()) {
-    throw MotionError(ErrorCode::kBusy, "a run is under way, and the arm jogs only between runs",
-                      {"wait for its end", "stop it first"});
+  if (impl_->busy() && !impl_->job->may_be_jogged()) {
+    throw MotionError(ErrorCode::kBusy,
+                      "a run is under way, and the arm jogs only between runs and in a pause",
+                      {"wait for its end", "pause it and wait until it rests", "stop it first"});
   }
   impl_->channels.jog.write(velocity);
 }
@@ -254,6 +287,13 @@ bool ControllerLoop::busy() const {
 }
 
 JointVector ControllerLoop::position() const { return impl_->channels.snapshot.read().position; }
+
+std::string ControllerLoop::fault() const { return impl_->fault(); }
+
+std::vector<LogRecord> ControllerLoop::fault_cycles() const {
+  if (!impl_->channels.faulted.load(std::memory_order_acquire)) return {};
+  return impl_->channels.history.records();
+}
 
 std::vector<std::string> ControllerLoop::shortcomings() const { return impl_->shortcomings; }
 

@@ -2,17 +2,19 @@
 
 #include <chrono>
 #include <thread>
+#include <utility>
 
 namespace viapoint {
 
 CycleRunner::CycleRunner(Drive& drive, Clock& clock, LoopChannels& channels,
-                         const JointLimits& limits, std::chrono::nanoseconds cycle,
+                         const JointLimits& limits, const LoopOptions& options,
                          const Measurement& start)
     : drive_(drive),
       clock_(clock),
       channels_(channels),
-      interpolator_(limits, cycle, start.q),
-      cycle_(cycle.count()),
+      interpolator_(limits, options.cycle, start.q),
+      guard_(limits, options.cycle, options.guard, start.q),
+      cycle_(options.cycle.count()),
       wished_(start.q),
       measurement_(start) {
   setpoint_.q = start.q;
@@ -36,37 +38,77 @@ void CycleRunner::wait_for_cycle() noexcept {
 }
 
 void CycleRunner::do_cycle() noexcept VIAPOINT_NONBLOCKING {
-  if (channels_.faulted.load(std::memory_order_relaxed)) {
+  if (channels_.faulted.load(std::memory_order_relaxed) ||
+      channels_.released.load(std::memory_order_relaxed)) {
     refuse_next();
     return;
   }
   if (motion_ == nullptr && !interpolator_.jogging()) begin_next();
-  if (motion_ == nullptr) jog();
+  // Read first and acted on last: a jog comes with the pause that was wished before it.
+  const bool is_jog = channels_.jog.read(wished_);
+  if (motion_ != nullptr) take_wish();
+  if (is_jog) jog();
   interpolator_.set_override(channels_.override_share.load(std::memory_order_relaxed));
-  if (motion_ != nullptr) interpolator_.wish(motion_->wish.load(std::memory_order_acquire));
 
   const std::int64_t begin = clock_.now();
-  interpolator_.tick(setpoint_);
+  if (!off_path_) interpolator_.tick(setpoint_);
+  const bool is_at_rest = guard();
   const std::int64_t end = clock_.now();
-  const bool fault = drive_.exchange(setpoint_, measurement_) == DriveStatus::kFault;
+  const DriveStatus status = drive_.exchange(setpoint_, measurement_);
+  guard_.look_at(status, measurement_);
+  const bool is_dead = status == DriveStatus::kFault || status == DriveStatus::kPowerLost;
+  const bool fault = is_dead || is_at_rest;
   if (fault) interpolator_.abandon();
   channels_.jogging.store(interpolator_.jogging(), std::memory_order_release);
   channels_.jog_block.store(interpolator_.jog_block(), std::memory_order_relaxed);
   channels_.snapshot.write(setpoint_.q, measurement_);
-
-  if (motion_ != nullptr) {
-    if (!arriving_ || fault) record(end - begin);
+  record(end - begin);
+  if (motion_ != nullptr && off_path_) {
+    motion_->state.store(RunState::kStopping, std::memory_order_release);
+  }
+  if (fault) {
+    fail();
+  } else if (motion_ != nullptr && !off_path_) {
     finish();
   }
-  if (fault) channels_.faulted.store(true, std::memory_order_release);
+}
+
+bool CycleRunner::guard() noexcept VIAPOINT_NONBLOCKING {
+  const Guard::Verdict verdict = guard_.pass(setpoint_);
+  if (verdict == Guard::Verdict::kPass) return false;
+  // A fault comes one cycle after rest, so that the drive has measured it.
+  if (verdict != Guard::Verdict::kStopOnPath) {
+    off_path_ = true;
+    interpolator_.abandon();
+    return verdict == Guard::Verdict::kAtRest && std::exchange(is_resting_, true);
+  }
+  if (interpolator_.active()) interpolator_.wish(Wish::kStop);
+  if (interpolator_.jogging()) interpolator_.stop_jog();
+  if (interpolator_.active() || interpolator_.jogging()) return false;
+  return std::exchange(is_resting_, true);
+}
+
+void CycleRunner::fail() noexcept VIAPOINT_NONBLOCKING {
+  channels_.breach = guard_.breach();
+  channels_.faulted.store(true, std::memory_order_release);
+  if (motion_ == nullptr) return;
+  motion_->state.store(RunState::kFault, std::memory_order_release);
+  channels_.motions.give_back(motion_);
+  motion_ = nullptr;
 }
 
 void CycleRunner::jog() noexcept VIAPOINT_NONBLOCKING {
-  if (!channels_.jog.read(wished_)) return;
   interpolator_.jog(wished_);
   // In this order: who sees the wish done sees the jog that it began.
   channels_.jogging.store(interpolator_.jogging(), std::memory_order_release);
   channels_.jog.done();
+}
+
+void CycleRunner::take_wish() noexcept VIAPOINT_NONBLOCKING {
+  const NumberedWish wish = motion_->wish.load(std::memory_order_acquire);
+  if (wish.number == wish_.number) return;
+  wish_ = wish;
+  interpolator_.wish(wish.wish);
 }
 
 void CycleRunner::begin_next() noexcept VIAPOINT_NONBLOCKING {
@@ -74,6 +116,7 @@ void CycleRunner::begin_next() noexcept VIAPOINT_NONBLOCKING {
   if (motion_ == nullptr) return;
   interpolator_.set_override(channels_.override_share.load(std::memory_order_relaxed));
   interpolator_.begin(*motion_->trajectory);
+  wish_ = {};
   cycle_of_run_ = 0;
   arriving_ = false;
 }
@@ -86,13 +129,17 @@ void CycleRunner::refuse_next() noexcept VIAPOINT_NONBLOCKING {
 }
 
 void CycleRunner::record(std::int64_t compute) noexcept VIAPOINT_NONBLOCKING {
-  QueuedMotion& motion = *motion_;
   interpolator_.describe(setpoint_, record_);
-  record_.cycle = cycle_of_run_++;
+  record_.cycle = motion_ != nullptr ? cycle_of_run_ : setpoint_.cycle;
   record_.stamp = woke_;
   record_.latency = woke_ - due_;
   record_.compute = compute;
   record_.measured = measurement_.q;
+  channels_.history.append(record_);
+  // The cycle after the last setpoint only measures.
+  if (motion_ == nullptr || (arriving_ && record_.state != RunState::kFault)) return;
+  ++cycle_of_run_;
+  QueuedMotion& motion = *motion_;
   if (!channels_.log.push(record_)) motion.lost_records.fetch_add(1, std::memory_order_relaxed);
   if (late_cycles_ > 0) {
     motion.overruns.fetch_add(1, std::memory_order_relaxed);
@@ -111,7 +158,11 @@ void CycleRunner::finish() noexcept VIAPOINT_NONBLOCKING {
     return;
   }
   motion_->state.store(state, std::memory_order_release);
-  if (!rests && state != RunState::kFault) return;
+  if (!rests) return;
+  // Before the motion goes back: who sees the stop's end sees that the drive is to be released.
+  if (state == RunState::kStopped && wish_.wish == Wish::kRelease) {
+    channels_.released.store(true, std::memory_order_release);
+  }
   channels_.motions.give_back(motion_);
   motion_ = nullptr;
 }

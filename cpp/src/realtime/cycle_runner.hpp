@@ -6,10 +6,13 @@
 #include <boost/lockfree/spsc_queue.hpp>
 #include <cstdint>
 
+#include "realtime/cycle_history.hpp"
 #include "realtime/jog_channel.hpp"
 #include "realtime/snapshot.hpp"
 #include "viapoint/realtime/clock.hpp"
+#include "viapoint/realtime/controller_loop.hpp"
 #include "viapoint/realtime/drive.hpp"
+#include "viapoint/realtime/guard.hpp"
 #include "viapoint/realtime/interpolator.hpp"
 #include "viapoint/realtime/motion_queue.hpp"
 
@@ -29,6 +32,10 @@ struct LoopChannels {
   std::atomic<double> override_share{1.0};  ///< ordinary threads
   std::atomic<bool> quit{false};            ///< ordinary threads
   std::atomic<bool> faulted{false};         ///< tick
+  // Written by the tick before `faulted`, and never after it.
+  Breach breach;
+  CycleHistory<ControllerLoop::kFaultCycles> history;
+  std::atomic<bool> released{false};  ///< tick: a category 1 stop has ended
 };
 
 /// Exactly one setpoint a cycle, in step with the clock. After a late wake-up the next setpoint is
@@ -38,7 +45,7 @@ class CycleRunner {
  public:
   /// @param start the arm's position, at rest
   CycleRunner(Drive& drive, Clock& clock, LoopChannels& channels, const JointLimits& limits,
-              std::chrono::nanoseconds cycle, const Measurement& start);
+              const LoopOptions& options, const Measurement& start);
 
   /// Until channels.quit.
   void run() noexcept;
@@ -48,9 +55,14 @@ class CycleRunner {
   void do_cycle() noexcept VIAPOINT_NONBLOCKING;
   /// Acts on a wish to jog, and says what came of it.
   void jog() noexcept VIAPOINT_NONBLOCKING;
+  void take_wish() noexcept VIAPOINT_NONBLOCKING;
   void begin_next() noexcept VIAPOINT_NONBLOCKING;
-  /// Gives back a motion that was queued while the drive failed.
+  /// Gives back a motion that was queued while the drive failed or was released.
   void refuse_next() noexcept VIAPOINT_NONBLOCKING;
+  /// The guard's last word on the setpoint; true where the arm rests after a breach.
+  [[nodiscard]] bool guard() noexcept VIAPOINT_NONBLOCKING;
+  /// Ends everything: nothing is told the drive any more.
+  void fail() noexcept VIAPOINT_NONBLOCKING;
   void record(std::int64_t compute) noexcept VIAPOINT_NONBLOCKING;
   void finish() noexcept VIAPOINT_NONBLOCKING;
   void let_others_run() noexcept;
@@ -59,13 +71,17 @@ class CycleRunner {
   Clock& clock_;
   LoopChannels& channels_;
   Interpolator interpolator_;
+  Guard guard_;
   std::int64_t cycle_;
   std::int64_t due_ = 0, woke_ = 0;
   std::int64_t late_cycles_ = 0;  ///< whole cycles that the last wake-up came late
   QueuedMotion* motion_ = nullptr;
+  NumberedWish wish_;  ///< of the motion, as far as it has been acted on
   /// The last setpoint is out. The run ends with the exchange after it, which measures where that
   /// setpoint has brought the arm.
   bool arriving_ = false;
+  bool off_path_ = false;    ///< the guard stops each joint
+  bool is_resting_ = false;  ///< after a breach, since the cycle before
   std::uint64_t cycle_of_run_ = 0;
   JointVector wished_;  ///< joint velocities
   Setpoint setpoint_;

@@ -71,6 +71,10 @@ void Interpolator::jog(const JointVector& velocity) noexcept VIAPOINT_NONBLOCKIN
   if (is_free) jog_.wish(velocity, jog_cycles_, position_);
 }
 
+void Interpolator::stop_jog() noexcept VIAPOINT_NONBLOCKING {
+  if (jog_.active()) jog_.wish(JointVector::Zero(position_.size()), 0, position_);
+}
+
 bool Interpolator::is_stop() const noexcept {
   return wish_ == Wish::kStop || wish_ == Wish::kRelease;
 }
@@ -116,7 +120,7 @@ RunState Interpolator::tick_jog(Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKIN
     move_ = -1;
   } else {
     off_path_ = true;
-    if (wish_ != Wish::kPause) jog_.wish(JointVector::Zero(position_.size()), 0, position_);
+    if (wish_ != Wish::kPause) stop_jog();
   }
   jog_.tick(setpoint);
   position_ = setpoint.q;

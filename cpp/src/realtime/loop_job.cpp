@@ -45,8 +45,12 @@ bool LoopJob::wait(double timeout) {
 }
 
 void LoopJob::wish(Wish wish) {
-  Wish present = motion_.wish;
-  while (present != Wish::kStop && !motion_.wish.compare_exchange_weak(present, wish)) {
+  NumberedWish present = motion_.wish;
+  const auto is_final = [&] {
+    return present.wish == Wish::kRelease ||
+           (present.wish == Wish::kStop && wish != Wish::kRelease);
+  };
+  while (!is_final() && !motion_.wish.compare_exchange_weak(present, {present.number + 1, wish})) {
   }
 }
 

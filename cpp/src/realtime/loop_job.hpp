@@ -24,7 +24,11 @@ class LoopJob final : public Job {
   bool wait(double timeout) override;
   void pause() override { wish(Wish::kPause); }
   void resume() override { wish(Wish::kRun); }
-  void stop() override { wish(Wish::kStop); }
+  void step() override { wish(Wish::kStep); }
+  void backward() override { wish(Wish::kBackward); }
+  void stop(StopCategory category) override {
+    wish(category == StopCategory::kRelease ? Wish::kRelease : Wish::kStop);
+  }
   [[nodiscard]] RunState state() const override { return motion_.state; }
   [[nodiscard]] double nominal_time() const override { return motion_.nominal_time; }
   [[nodiscard]] double duration() const override { return motion_.trajectory->duration(); }
@@ -35,6 +39,12 @@ class LoopJob final : public Job {
 
   /// What crosses the real-time boundary.
   [[nodiscard]] QueuedMotion* motion() { return &motion_; }
+  /// True where the arm may be jogged meanwhile: it was paused and rests.
+  [[nodiscard]] bool may_be_jogged() const {
+    const RunState state = motion_.state;
+    return motion_.wish.load().wish == Wish::kPause &&
+           (state == RunState::kPaused || state == RunState::kJogging);
+  }
   /// True once the motion has come back and its log is complete.
   [[nodiscard]] bool ended() const;
 

@@ -64,6 +64,12 @@ void apply(const TimedCommand& command, Interpolator& interpolator) {
     case TimedCommand::Kind::kStop:
       interpolator.wish(Wish::kStop);
       break;
+    case TimedCommand::Kind::kStep:
+      interpolator.wish(Wish::kStep);
+      break;
+    case TimedCommand::Kind::kBackward:
+      interpolator.wish(Wish::kBackward);
+      break;
   }
 }
 
@@ -106,6 +112,9 @@ std::vector<LogRecord> simulate(const Trajectory& trajectory, const JointLimits&
     double cycles = static_cast<double>(k) + 1.0;
     if (record.state == RunState::kPaused) {
       cycles = next->time / seconds;
+    } else if (record.rate < 0.0) {
+      cycles += record.nominal_time / (share * seconds);
+      if (next != commands.end()) cycles = std::min(cycles, next->time / seconds);
     } else if (record.state == RunState::kRunning && record.rate == share) {
       cycles += (trajectory.duration() - record.nominal_time) / (share * seconds);
       if (next != commands.end()) cycles = std::min(cycles, next->time / seconds);

@@ -13,6 +13,7 @@
 #include "viapoint/core/joint_limits.hpp"
 #include "viapoint/realtime/clock.hpp"
 #include "viapoint/realtime/drive.hpp"
+#include "viapoint/realtime/guard.hpp"
 #include "viapoint/realtime/motion_log.hpp"
 #include "viapoint/trajectory/trajectory.hpp"
 
@@ -25,6 +26,7 @@ struct LoopOptions {
   /// Records that a run keeps, the newest, at least 1. These are 16 minutes of motion at 500 Hz,
   /// and then about 400 MB; rests take none.
   std::size_t log_records = 500'000;
+  GuardOptions guard;
 };
 
 /// Figures of one run.
@@ -42,6 +44,13 @@ struct RunReport {
   std::uint64_t rested_cycles = 0;
 };
 
+/// How a stop ends (IEC 60204-1, 9.2.2): both come to rest on the path. Category 0, power that goes
+/// at once, is the drive's; the loop reports it (DriveStatus::kPowerLost).
+enum class StopCategory : std::uint8_t {
+  kRelease = 1,  ///< then the drive is released: the arm has to be connected anew
+  kHold = 2,     ///< the arm holds its position, under power
+};
+
 /// One motion under way. All methods from any ordinary thread.
 class Job {
  public:
@@ -50,8 +59,15 @@ class Job {
   /// last setpoint was sent. @throws MotionError(kDriveFault) on a fault
   virtual bool wait(double timeout) = 0;
   virtual void pause() = 0;
+  /// On along the path; from where a jog has brought the arm it first returns to the path.
   virtual void resume() = 0;
-  virtual void stop() = 0;  ///< category 2: to rest on the path; then state kStopped
+  /// On to the end of the move under way, and then to rest: there, or soon after it where the
+  /// motion passes the end at speed.
+  virtual void step() = 0;
+  /// Back along the path, to the motion's start at most, until another wish. Outputs are held.
+  virtual void backward() = 0;
+  /// To rest on the path; then state kStopped.
+  virtual void stop(StopCategory category = StopCategory::kHold) = 0;
   [[nodiscard]] virtual RunState state() const = 0;
   [[nodiscard]] virtual double nominal_time() const = 0;  ///< progress [s]
   [[nodiscard]] virtual double duration() const = 0;      ///< nominal [s]
@@ -85,8 +101,8 @@ class ControllerLoop {
   /// Hold-to-run: joint velocities (n,) [rad/s or m/s] for the next 250 ms; calling again renews
   /// them, zero or silence brings the arm to rest within its limits. Joints stop at their position
   /// limits by themselves, the arm before its coupled limits. Refused: kBusy while a run is under
-  /// way, paused or not; kVelocityLimit; kBadArgument; kDriveFault. The override does not act on
-  /// it.
+  /// way, unless it rests after Job::pause(); kVelocityLimit; kBadArgument; kDriveFault. The
+  /// override does not act on it.
   void jog(const JointVector& velocity);
   /// True until a jog has come to rest; no run is admitted meanwhile.
   [[nodiscard]] bool jogging() const;
@@ -101,6 +117,13 @@ class ControllerLoop {
   [[nodiscard]] bool busy() const;
   /// Where the loop's set-point rests now.
   [[nodiscard]] JointVector position() const;
+  /// What has failed, in one sentence; empty while nothing has. After a fault nothing moves any
+  /// more, and the loop has to be built anew.
+  [[nodiscard]] std::string fault() const;
+  /// The last cycles before the fault, at most kFaultCycles, the oldest first; empty while nothing
+  /// has failed.
+  [[nodiscard]] std::vector<LogRecord> fault_cycles() const;
+  static constexpr int kFaultCycles = 50;
   /// One line each: what real-time right could not be had and what would give it. Empty: all had.
   [[nodiscard]] std::vector<std::string> shortcomings() const;
 
@@ -114,14 +137,15 @@ void admit(const Trajectory& trajectory, const JointLimits& limits, const JointV
 
 /// A command of a simulated run.
 struct TimedCommand {
-  enum class Kind { kOverride, kPause, kResume, kStop };
+  enum class Kind { kOverride, kPause, kResume, kStop, kStep, kBackward };
   double time = 0.0;  ///< [s] from the start of the run
   Kind kind = Kind::kOverride;
   double value = 0.0;
 };
 
 /// The same Interpolator in virtual time, without thread or drive: one record a cycle, until the
-/// motion has ended or rests for good. A motion paused and never resumed ends when it rests.
+/// motion has ended or rests for good. A motion paused and never resumed ends when it rests; so do
+/// a step, and the way back.
 [[nodiscard]] std::vector<LogRecord> simulate(const Trajectory& trajectory,
                                               const JointLimits& limits,
                                               std::vector<TimedCommand> commands,

@@ -22,7 +22,12 @@ struct Measurement {
   std::uint64_t inputs = 0;
 };
 
-enum class DriveStatus { kOk, kFault };
+enum class DriveStatus {
+  kOk,
+  kFault,
+  kSilent,     ///< no answer this cycle: nothing was measured
+  kPowerLost,  ///< the power went (stop category 0): the arm is where it was measured last
+};
 
 /// One arm's drives. enable() and release() are called from ordinary threads with the loop at
 /// rest; exchange() once a cycle from the real-time thread.
@@ -36,8 +41,8 @@ class Drive {
   [[nodiscard]] virtual DriveStatus exchange(const Setpoint& setpoint,
                                              Measurement& measurement) noexcept = 0;
   virtual void release() noexcept = 0;
-  /// What went wrong, once exchange() has returned kFault; it is not called again after that.
-  /// Real-time: not.
+  /// What went wrong, once exchange() has returned kFault or kPowerLost; it is not called again
+  /// after that. Real-time: not.
   [[nodiscard]] virtual std::string fault() const { return "the drive reported a fault"; }
 };
 

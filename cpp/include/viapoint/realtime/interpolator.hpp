@@ -67,6 +67,8 @@ class Interpolator {
   /// from the jog under way; zero comes to rest at once. Override does not act on it. Ignored while
   /// a motion is active, unless it rests after a wish to pause, and after a fault.
   void jog(const JointVector& velocity) noexcept VIAPOINT_NONBLOCKING;
+  /// Brings a jog to rest at once.
+  void stop_jog() noexcept VIAPOINT_NONBLOCKING;
   /// True until a jog has come to rest.
   [[nodiscard]] bool jogging() const noexcept { return jog_.active(); }
   /// What keeps the jog, or kept the last one, from doing what was wished.

@@ -14,12 +14,19 @@
 
 namespace viapoint {
 
+/// A wish, and which one it is: two steps one after the other are two wishes.
+struct NumberedWish {
+  std::uint32_t number = 0;
+  Wish wish = Wish::kRun;
+};
+static_assert(std::atomic<NumberedWish>::is_always_lock_free);
+
 /// One motion on its way through the loop, and what both sides of the boundary say about it while
 /// it runs. Owned by an ordinary thread until it has come back.
 struct QueuedMotion {
   std::shared_ptr<const Trajectory> trajectory;  ///< constant; only ordinary threads copy it
 
-  std::atomic<Wish> wish{Wish::kRun};               ///< written by ordinary threads
+  std::atomic<NumberedWish> wish{};                 ///< written by ordinary threads
   std::atomic<RunState> state{RunState::kRunning};  ///< the rest is written by the tick
   std::atomic<double> nominal_time{0.0};
   std::atomic<std::int32_t> move{-1};

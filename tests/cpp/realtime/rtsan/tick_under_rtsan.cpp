@@ -12,6 +12,7 @@
 #include "viapoint/drives/simulated_drive.hpp"
 #include "viapoint/profile/state_to_state.hpp"
 #include "viapoint/realtime/controller_loop.hpp"
+#include "viapoint/realtime/guard.hpp"
 #include "viapoint/realtime/interpolator.hpp"
 
 namespace viapoint {
@@ -34,24 +35,50 @@ void command_at_random(std::mt19937& random, Interpolator& interpolator, int cyc
   }
   if (unit(random) > 0.03) return;
   if (unit(random) < 0.5) return interpolator.set_override(unit(random));
-  interpolator.wish(unit(random) < 0.3 ? Wish::kPause : Wish::kRun);
+  constexpr std::array kWishes = {Wish::kPause, Wish::kRun, Wish::kRun, Wish::kStep,
+                                  Wish::kBackward};
+  interpolator.wish(kWishes[static_cast<std::size_t>(unit(random) * 4.999)]);
+}
+
+/// A chain of joints about z, and a tool that the guard looks at and never stops.
+GuardOptions tool_guard(int joints) {
+  Pose tool = Pose::Identity();
+  tool.translation().x() = 1.0;
+  const std::vector<ChainJoint> chain(static_cast<std::size_t>(joints));
+  GuardOptions options;
+  options.kinematics = ForwardKinematics(chain, tool);
+  options.tool_speed = 1e6;
+  return options;
 }
 
 void tick_with_commands() {
-  int ticks = 0, stopped = 0;
+  int ticks = 0, stopped = 0, breaches = 0;
   for (unsigned seed = 0; ticks < kCycles; ++seed) {
     std::mt19937 random(seed);
     const Motion motion = random_motion(random);
     Interpolator interpolator(motion.limits, kCycle, motion.trajectory.at(0.0).q);
     interpolator.begin(motion.trajectory);
+    Guard guard(motion.limits, kCycle, tool_guard(motion.limits.joints()),
+                motion.trajectory.at(0.0).q);
+    const JointVector away = 0.1 * motion.limits.velocity;
     Setpoint setpoint;
     for (int k = 0; interpolator.active(); ++k, ++ticks) {
       command_at_random(random, interpolator, k);
+      if (interpolator.state() == RunState::kPaused && k % 50 < 5) interpolator.jog(away);
       interpolator.tick(setpoint);
+      if (seed % 5 == 0 && k == 100) setpoint.q[0] += 1.0;
+      guard.pass(setpoint);
+      guard.look_at(DriveStatus::kOk, {setpoint.q, 0});
+      if (!guard.breach().any()) continue;
+      ++breaches;
+      while (guard.pass(setpoint) == Guard::Verdict::kOffPath) {
+      }
+      break;
     }
     stopped += interpolator.state() == RunState::kStopped ? 1 : 0;
   }
-  std::printf("%d ticks, %d motions stopped on their path\n", ticks, stopped);
+  std::printf("%d ticks, %d motions stopped on their path, %d by the guard\n", ticks, stopped,
+              breaches);
 }
 
 /// Jogs with position and coupled limits in the way.
