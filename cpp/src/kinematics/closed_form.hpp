@@ -71,6 +71,8 @@ class BranchList {
 struct ClosedSolutions {
   BranchList branches;
   double out_of_reach = 0.0;  ///< how far the wrist is out of reach [m]; 0 when it is not
+  /// The least by which a branch is missing [m]; 0 where none is, or the form does not tell.
+  double near_miss = 0.0;
   /// The form has put every branch through its own forward kinematics already.
   bool confirmed = false;
   bool meeting = true;  ///< two branches may be one

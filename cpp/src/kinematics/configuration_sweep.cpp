@@ -15,8 +15,11 @@ namespace {
 constexpr double kTurn = 2.0 * kPi;
 constexpr double kNowhere = -10.0;  ///< room of a branch that does not exist [rad]
 constexpr double kHopeless = -1.0;  ///< summits below this are not climbed [rad]
+constexpr double kEdge = 1e-10;     ///< -π itself is the last of the turn before [rad]
 constexpr int kSteps = 40;
 constexpr int kHalvings = 20;
+constexpr int kHalves = 14;           ///< a stretch is looked at in up to 2^this parts
+constexpr double kLeastMove = 0.01;   ///< of a stretch that is halved [rad]
 constexpr double kResolution = 1e-6;  ///< of the parameter [rad]
 
 }  // namespace
@@ -30,7 +33,7 @@ ConfigurationSweep::ConfigurationSweep(const ForwardKinematics& forward, const J
     const double high = limits.position_max[i];
     if (slides_.back() || high - low >= kTurn) continue;  // open limits, too
     for (double k = std::ceil((low - kPi) / kTurn); k * kTurn - kPi < high; k += 1.0) {
-      const double from = std::max(low, k * kTurn - kPi);
+      const double from = std::max(low, k * kTurn - kPi + kEdge);
       const double to = std::min(high, k * kTurn + kPi);
       if (to > from) windows_.back().push_back({0.5 * (from + to), 0.5 * (to - from)});
     }
@@ -86,70 +89,165 @@ void ConfigurationSweep::each_turn(const JointVector& branch, const JointVector&
   }
 }
 
-std::vector<JointVector> ConfigurationSweep::find(double low, double high, int count,
-                                                  const JointVector& reference, const Solve& solve,
-                                                  const Signs& signs, const Accept& accept) const {
-  std::map<Key, Track> tracks;
-  std::set<double> places;
-  const auto take = [&](Track& track, const Place& place) {
-    if (place.room < 0.0 || !limits_.contains(place.q)) return;
-    if (track.best && track.best->margin >= place.margin) return;
-    if (accept(place.q)) track.best = place;
-  };
-  const auto look = [&](double parameter) {
-    ClosedSolutions found;
-    solve(parameter, found);
-    places.insert(parameter);
+/// One sweep: what was seen so far.
+class ConfigurationSweep::Walk {
+ public:
+  Walk(const ConfigurationSweep& sweep, const JointVector& reference, const Solve& solve,
+       const Signs& signs, const Accept& accept)
+      : sweep_(sweep), reference_(reference), solve_(solve), signs_(signs), accept_(accept) {}
+
+  void look_evenly(double low, double high, int count);
+  void halve_where_room_may_rise();
+  void climb_summits();
+  [[nodiscard]] std::vector<JointVector> solutions() const;
+
+ private:
+  /// What there is at one parameter.
+  struct Sight {
+    double parameter = 0.0;
     std::set<Sides> existing;
-    for (const ClosedBranch& branch : found.branches) {
-      const Sides sides = signs(branch.sides);
-      existing.insert(sides);
-      each_turn(branch.q, reference, [&](const std::vector<int>& turns, const Place& place) {
-        Track& track = tracks[{sides, turns}];
-        const auto [known, first] = track.room.try_emplace(parameter, place.room);
-        if (!first) known->second = std::max(known->second, place.room);
-        take(track, place);
-      });
-    }
-    return existing;
+    double near_miss = 0.0;  ///< [m]
   };
+  Sight look(double parameter);
+  void take(Track& track, const Place& place) const;
+  /// Looks at both sides of where a branch begins or ends between two places.
+  void bisect(const Sight& left, const Sight& right);
+  /// Looks for a branch that neither of the three places has.
+  void seek_missing(const Sight& left, const Sight& middle, const Sight& right);
+  void halve(const Track& track, double left, double right, int depth);
 
-  // Even places, and both sides of where a branch begins or ends between two of them.
-  std::set<Sides> before;
-  for (int i = 0; i <= count; ++i) {
-    const double parameter = low + (high - low) * i / count;
-    const std::set<Sides> here = look(parameter);
-    if (i > 0 && here != before) {
-      double left = low + (high - low) * (i - 1) / count;
-      double right = parameter;
-      for (int halving = 0; halving < kHalvings; ++halving) {
-        const double middle = 0.5 * (left + right);
-        (look(middle) == before ? left : right) = middle;
-      }
-    }
-    before = here;
+  const ConfigurationSweep& sweep_;
+  const JointVector& reference_;
+  const Solve& solve_;
+  const Signs& signs_;
+  const Accept& accept_;
+  std::map<Key, Track> tracks_;
+  std::set<double> parameters_;
+};
+
+void ConfigurationSweep::Walk::take(Track& track, const Place& place) const {
+  if (place.room < 0.0 || !sweep_.limits_.contains(place.q)) return;
+  if (track.best && track.best->margin >= place.margin) return;
+  if (accept_(place.q)) track.best = place;
+}
+
+ConfigurationSweep::Walk::Sight ConfigurationSweep::Walk::look(double parameter) {
+  ClosedSolutions found;
+  solve_(parameter, found);
+  parameters_.insert(parameter);
+  Sight sight{parameter, {}, found.near_miss};
+  for (const ClosedBranch& branch : found.branches) {
+    const Sides sides = signs_(branch.sides);
+    sight.existing.insert(sides);
+    sweep_.each_turn(branch.q, reference_, [&](const std::vector<int>& turns, const Place& place) {
+      Track& track = tracks_[{sides, turns}];
+      const auto [known, first] = track.places.try_emplace(parameter, place);
+      if (!first && known->second.room < place.room) known->second = place;
+      take(track, place);
+    });
   }
+  return sight;
+}
 
-  for (auto& [key, track] : tracks) {
-    const std::map<double, double> rooms = track.room;
+void ConfigurationSweep::Walk::bisect(const Sight& left, const Sight& right) {
+  if (left.existing == right.existing) return;
+  double from = left.parameter;
+  double to = right.parameter;
+  for (int halving = 0; halving < kHalvings; ++halving) {
+    const double middle = 0.5 * (from + to);
+    (look(middle).existing == left.existing ? from : to) = middle;
+  }
+}
+
+void ConfigurationSweep::Walk::seek_missing(const Sight& left, const Sight& middle,
+                                            const Sight& right) {
+  const auto higher = [&](const Sight& other) {
+    return other.near_miss == 0.0 || other.near_miss >= middle.near_miss;
+  };
+  if (middle.near_miss == 0.0 || !higher(left) || !higher(right)) return;
+  std::optional<double> there;
+  (void)refined_minimum(left.parameter, right.parameter, {middle.parameter, middle.near_miss},
+                        kResolution, kSteps, [&](double at) {
+                          if (there) return 0.0;
+                          ClosedSolutions found;
+                          solve_(at, found);
+                          for (const ClosedBranch& branch : found.branches) {
+                            const Sides sides = signs_(branch.sides);
+                            if (!left.existing.contains(sides) &&
+                                !middle.existing.contains(sides) &&
+                                !right.existing.contains(sides)) {
+                              there = at;
+                            }
+                          }
+                          return found.near_miss;
+                        });
+  if (!there) return;
+  const Sight found = look(*there);
+  const bool before = *there < middle.parameter;
+  bisect(before ? left : middle, found);
+  bisect(found, before ? middle : right);
+}
+
+void ConfigurationSweep::Walk::look_evenly(double low, double high, int count) {
+  std::vector<Sight> sights;
+  for (int i = 0; i <= count; ++i) {
+    sights.push_back(look(low + (high - low) * i / count));
+    const auto here = sights.end() - 1;
+    if (i > 0) bisect(here[-1], *here);
+    if (i > 1) seek_missing(here[-2], here[-1], *here);
+  }
+}
+
+void ConfigurationSweep::Walk::halve(const Track& track, double left, double right, int depth) {
+  const auto from = track.places.find(left);
+  const auto to = track.places.find(right);
+  if (from == track.places.end() || to == track.places.end() || track.best || depth == 0) return;
+  double moved = 0.0;
+  for (int i = 0; i < from->second.q.size(); ++i) {
+    const double apart = to->second.q[i] - from->second.q[i];
+    const bool slides = sweep_.slides_[static_cast<size_t>(i)];
+    moved = std::max(moved, std::abs(slides ? apart : std::remainder(apart, kTurn)));
+  }
+  if (from->second.room + to->second.room + moved <= 0.0 || moved < kLeastMove) return;
+  const double middle = 0.5 * (left + right);
+  look(middle);
+  halve(track, left, middle, depth - 1);
+  halve(track, middle, right, depth - 1);
+}
+
+void ConfigurationSweep::Walk::halve_where_room_may_rise() {
+  std::vector<Key> keys;
+  for (const auto& [key, track] : tracks_) keys.push_back(key);
+  for (const Key& key : keys) {
+    const std::vector<double> parameters(parameters_.begin(), parameters_.end());
+    for (size_t i = 1; i < parameters.size() && !tracks_[key].best; ++i) {
+      halve(tracks_[key], parameters[i - 1], parameters[i], kHalves);
+    }
+  }
+}
+
+void ConfigurationSweep::Walk::climb_summits() {
+  for (auto& [key, track] : tracks_) {
+    const std::map<double, Place>& seen = track.places;
     const auto room_at = [&](std::set<double>::const_iterator place) {
-      const auto found = rooms.find(*place);
-      return found == rooms.end() ? kNowhere : found->second;
+      const auto found = seen.find(*place);
+      return found == seen.end() ? kNowhere : found->second.room;
     };
-    for (const auto& [parameter, room] : rooms) {
+    for (const auto& [parameter, here] : seen) {
       if (track.best) break;
+      const double room = here.room;
       if (room < kHopeless) continue;
-      const auto place = places.find(parameter);
-      const auto left = place == places.begin() ? place : std::prev(place);
-      const auto right = std::next(place) == places.end() ? place : std::next(place);
+      const auto place = parameters_.find(parameter);
+      const auto left = place == parameters_.begin() ? place : std::prev(place);
+      const auto right = std::next(place) == parameters_.end() ? place : std::next(place);
       if (room < room_at(left) || room < room_at(right)) continue;
       (void)refined_minimum(*left, *right, {parameter, -room}, kResolution, kSteps, [&](double at) {
         ClosedSolutions found;
-        solve(at, found);
+        solve_(at, found);
         double most = kNowhere;
         for (const ClosedBranch& branch : found.branches) {
-          if (signs(branch.sides) != key.first) continue;
-          const Place there = place_of(branch.q, reference, key.second);
+          if (signs_(branch.sides) != key.first) continue;
+          const Place there = sweep_.place_of(branch.q, reference_, key.second);
           most = std::max(most, there.room);
           take(track, there);
         }
@@ -157,11 +255,24 @@ std::vector<JointVector> ConfigurationSweep::find(double low, double high, int c
       });
     }
   }
-  std::vector<JointVector> solutions;
-  for (const auto& [key, track] : tracks) {
-    if (track.best) solutions.push_back(track.best->q);
+}
+
+std::vector<JointVector> ConfigurationSweep::Walk::solutions() const {
+  std::vector<JointVector> out;
+  for (const auto& [key, track] : tracks_) {
+    if (track.best) out.push_back(track.best->q);
   }
-  return solutions;
+  return out;
+}
+
+std::vector<JointVector> ConfigurationSweep::find(double low, double high, int count,
+                                                  const JointVector& reference, const Solve& solve,
+                                                  const Signs& signs, const Accept& accept) const {
+  Walk walk(*this, reference, solve, signs, accept);
+  walk.look_evenly(low, high, count);
+  walk.halve_where_room_may_rise();
+  walk.climb_summits();
+  return walk.solutions();
 }
 
 }  // namespace viapoint

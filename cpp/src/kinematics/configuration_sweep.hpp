@@ -15,10 +15,12 @@ namespace viapoint {
 
 /// Walks the parameter that the pose leaves open, and follows each configuration (sides and turns)
 /// by its room: how far its worst joint is from leaving the limits or its turn, negative outside.
-/// Where a branch begins or ends between two of the places looked at, the end is bisected. A
-/// configuration that lives only between two places shows as a summit of its room below zero, and
-/// is climbed (Brent 1973). What it still misses is one whose branch exists nowhere but between two
-/// even places, or whose room has a summit there that neither of them shows.
+/// Where a branch begins or ends between two of the places looked at, the end is bisected; where
+/// one that is missing comes nearest to being there, it is sought between the places (Brent 1973).
+/// Between two places the room rises by no more than the joints move, so where that could bring it
+/// above zero the places are halved, and its summits below zero are climbed. What it still misses
+/// is a branch that another one, nearer to being there, hides, and joints that move on and back
+/// between two places.
 class ConfigurationSweep {
  public:
   using Solve = std::function<void(double parameter, ClosedSolutions& found)>;
@@ -51,9 +53,10 @@ class ConfigurationSweep {
     double margin = 0.0;  ///< to the limits, as a share of a joint's range
   };
   struct Track {
-    std::map<double, double> room;  ///< at each parameter where the branch exists [rad]
+    std::map<double, Place> places;  ///< at each parameter where the branch exists
     std::optional<Place> best;
   };
+  class Walk;
   /// Calls visit(key's turns, place) for each turn a branch may be on.
   template <typename Visit>
   void each_turn(const JointVector& branch, const JointVector& reference, Visit&& visit) const;

@@ -174,6 +174,7 @@ void Decomposition::solve(const Pose& motion, const JointVector& held, ClosedSol
   PositionRoots places;
   position_->solve(task * point_, all, places);
   solutions.held = solutions.held || places.held;
+  solutions.near_miss = places.near_miss;
   if (places.count == 0) solutions.out_of_reach = places.missing;
   for (int i = 0; i < places.count; ++i) {
     const PositionRoot& place = places.roots[static_cast<size_t>(i)];

@@ -256,6 +256,7 @@ void PositionProblem::solve(const Eigen::Vector3d& target, std::span<const doubl
       finish(both, last_first_ ? qb : qa, last_first_ ? qa : qb);
     }
   }
+  found.near_miss = missing;
   if (found.count == 0) found.missing = missing;
 }
 

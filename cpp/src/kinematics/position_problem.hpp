@@ -24,8 +24,9 @@ struct PositionRoot {
 struct PositionRoots {
   int count = 0;
   std::array<PositionRoot, 4> roots;
-  double missing = 0.0;  ///< out of reach [m], when there is none
-  bool held = false;     ///< a joint was free and was held
+  double missing = 0.0;    ///< out of reach [m], when there is none
+  double near_miss = 0.0;  ///< the least by which a root is missing, [m]; 0: none is
+  bool held = false;       ///< a joint was free and was held
 };
 
 class PositionProblem {

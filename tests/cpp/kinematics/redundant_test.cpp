@@ -6,6 +6,7 @@
 #include <set>
 
 #include "kinematics/arms.hpp"
+#include "kinematics/redundant_form.hpp"
 #include "realtime/no_allocation_scope.hpp"
 #include "viapoint/core/error.hpp"
 #include "viapoint/core/units.hpp"
@@ -93,6 +94,73 @@ TEST_P(SevenJoints, GiveOneSolutionForEachConfiguration) {
     same_sides += found ? 1 : 0;
   }
   EXPECT_EQ(same_sides, kProblems);
+}
+
+TEST_P(SevenJoints, FindTheConfigurationOfThePoseUnderAnyLimits) {
+  // Limits as no arm has them: some of a few hundredths of a radian about the joints, some of
+  // more than a turn, where configurations live on short stretches of the redundancy only.
+  for (const bool narrow : {true, false}) {
+    std::mt19937_64 generator(88);
+    std::uniform_real_distribution<double> share(0.0, 1.0);
+    for (int problem = 0; problem < 300; ++problem) {
+      SCOPED_TRACE(testing::Message() << (narrow ? "narrow" : "wide") << ", problem " << problem);
+      RobotDescription description = load_description(GetParam());
+      JointLimits& limits = description.limits;
+      if (!narrow) {
+        limits.position_min.setConstant(-3.6);
+        limits.position_max.setConstant(3.3);
+      }
+      JointVector q(7);
+      for (int i = 0; i < 7; ++i) {
+        const double low = limits.position_min[i];
+        q[i] = low + (limits.position_max[i] - low) * share(generator);
+        if (!narrow || i % 2 == 1) continue;
+        limits.position_min[i] = q[i] - 0.01 - 0.4 * share(generator);
+        limits.position_max[i] = q[i] + 0.01 + 0.4 * share(generator);
+      }
+      const RobotPtr robot = RobotModel::make(description);
+      const InverseKinematics& inverse = robot->inverse();
+      Configuration made_by = inverse.configuration(q);
+      if (!narrow) made_by.turns = TurnVector();  // of wide limits the near turns are kept only
+      bool found = false;
+      for (const JointVector& each : inverse.solve_all(robot->fk(q))) {
+        found = found || inverse.configuration(each).fits(made_by);
+      }
+      ASSERT_TRUE(found) << made_by.describe();
+    }
+  }
+}
+
+TEST_P(SevenJoints, ASieveDropsOnlyBranchesThatBreakIt) {
+  const RobotPtr robot = arm(GetParam());
+  const auto form = recognise_redundant_form(robot->forward());
+  const JointTurns turns(robot->forward(), robot->limits());
+  std::mt19937_64 generator(89);
+  std::uniform_real_distribution<double> bound(0.5, 30.0);
+  int dropped = 0;
+  int kept = 0;
+  for (int problem = 0; problem < 3000; ++problem) {
+    SCOPED_TRACE(problem);
+    const JointVector q = random_joints(*robot, generator);
+    const JointVector near = random_joints(*robot, generator);
+    const double most = bound(generator);
+    ClosedSolutions all;
+    ClosedSolutions sieved;
+    form->solve(robot->fk(q), form->parameter_of(q), near, all);
+    form->solve(robot->fk(q), form->parameter_of(q), near, sieved, JointSieve(turns, near, most));
+    for (const ClosedBranch& branch : all.branches) {
+      const auto turned = turns.nearest(branch.q, near);
+      if (!turned || (*turned - near).squaredNorm() > most) continue;
+      ++kept;
+      const bool there =
+          std::any_of(sieved.branches.begin(), sieved.branches.end(),
+                      [&](const ClosedBranch& each) { return (each.q - branch.q).norm() == 0.0; });
+      ASSERT_TRUE(there) << branch.q.transpose();
+    }
+    dropped += all.branches.size() - sieved.branches.size();
+  }
+  EXPECT_GT(kept, 1000);
+  EXPECT_GT(dropped, 1000);
 }
 
 TEST_P(SevenJoints, GiveTheNearTurnsHoweverWideTheLimits) {
