@@ -59,8 +59,9 @@ def read_points(path: Path, robot: Robot | None) -> tuple[str, str, dict[str, Ta
         raise _damaged(path, str(error)) from None
     if not isinstance(document, dict) or document.get("format") != FORMAT:
         raise _damaged(path, f'the key "format" must be "{FORMAT}"')
-    if document.get("version") != VERSION or isinstance(document["version"], bool):
-        raise _damaged(path, f'the key "version" must be {VERSION}')
+    version = document.get("version")
+    if type(version) is not int or version != VERSION:  # neither true nor 1.0
+        raise _damaged(path, f'the key "version" must be the integer {VERSION}')
     _require_known(path, document, "", _MEMBERS)
     name = document.get("robot")
     if not isinstance(name, str):

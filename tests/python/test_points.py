@@ -212,6 +212,7 @@ DAMAGES = {
     ),
     "twice": lambda text: text.replace('"name": "B"', '"name": "A"'),
     "a list": lambda text: "[]",
+    "version 1.0": lambda text: text.replace('"version": 1', '"version": 1.0'),
     "version true": lambda text: text.replace('"version": 1', '"version": true'),
     "points twice": lambda text: text.replace('"points":', '"points": [], "points":'),
     "joints twice": lambda text: text.replace('"q":', '"q": [0, 0, 0, 0, 0, 0], "q":', 1),
