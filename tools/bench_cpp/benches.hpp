@@ -13,6 +13,9 @@ void bench_certificate(int programs);
 /// Random walks in joint space, corners rounded: how much of the time of stopping at every point is
 /// left, and what planning costs a point. @param paths to plan a case
 void bench_walk(int paths);
+/// Programs of 10, 100, … moves: time and memory a move, each size in a process of its own.
+/// @param moves of the longest program
+void bench_growth(int moves);
 /// Lines, and arcs, helices and splines, at random on five arms as joints: how many can be
 /// followed, and whether any of 1000 places of every piece is beyond what was proven.
 /// @param problems of each of the two kinds for each arm

@@ -9,14 +9,15 @@ namespace {
 
 constexpr std::string_view kUsage =
     "usage: viapoint-bench tick [TICKS] | plan [PROGRAMS] | certificate [PROGRAMS] |\n"
-    "                      walk [PATHS] | insertion [PROBLEMS] | kinematics [POSES] |\n"
-    "                      tracking [LINES] | all\n"
+    "                      walk [PATHS] | growth [MOVES] | insertion [PROBLEMS] |\n"
+    "                      kinematics [POSES] | tracking [LINES] | all\n"
     "Prints one JSON object a line; times as its keys say.\n";
 
 constexpr int kTicks = 1'000'000;
 constexpr int kPrograms = 100;
 constexpr int kPoses = 1'000'000;
 constexpr int kPaths = 20;
+constexpr int kMoves = 10'000;
 constexpr int kProblems = 1000;
 constexpr int kLines = 300;
 
@@ -31,6 +32,7 @@ int count_of(int argc, char** argv, int otherwise) {
 int default_count(std::string_view command) {
   if (command == "tick") return kTicks;
   if (command == "kinematics") return kPoses;
+  if (command == "growth") return kMoves;
   if (command == "insertion") return kProblems;
   if (command == "tracking") return kLines;
   return command == "walk" ? kPaths : kPrograms;
@@ -55,6 +57,8 @@ int main(int argc, char** argv) {
       bench_certificate(count);
     } else if (command == "walk") {
       bench_walk(count);
+    } else if (command == "growth") {
+      bench_growth(count);
     } else if (command == "insertion") {
       bench_insertion(count);
     } else if (command == "kinematics") {
@@ -68,6 +72,7 @@ int main(int argc, char** argv) {
       bench_plan(kPrograms);
       bench_certificate(kPrograms);
       bench_walk(kPaths);
+      bench_growth(kMoves);
       bench_insertion(kProblems);
     } else {
       std::cerr << kUsage;

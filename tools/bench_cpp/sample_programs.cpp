@@ -86,16 +86,20 @@ RobotPtr walking_robot() {
   return RobotModel::joint_robot(limits);
 }
 
-MotionProgram random_walk(const RobotModel& robot, int points, std::uint64_t seed) {
-  std::mt19937_64 random(seed);
+JointVector random_walk_step(int joints, std::mt19937_64& random) {
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> length(0.1, 0.6);
+  JointVector direction(joints);
+  for (int i = 0; i < joints; ++i) direction[i] = normal(random);
+  return length(random) * direction.normalized();
+}
+
+MotionProgram random_walk(const RobotModel& robot, int points, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
   JointVector q = JointVector::Zero(robot.joints());
   MotionProgram program = empty_program(robot, q);
   for (int k = 1; k < points; ++k) {
-    JointVector direction(robot.joints());
-    for (int i = 0; i < robot.joints(); ++i) direction[i] = normal(random);
-    q += length(random) * direction.normalized();
+    q += random_walk_step(robot.joints(), random);
     add(program, PtpMove{JointTarget{q}}, {});
   }
   return program;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <random>
 
 #include "viapoint/kinematics/robot_model.hpp"
 #include "viapoint/program/motion_program.hpp"
@@ -18,6 +19,8 @@ namespace viapoint::bench {
 /// Six joints that take 2.1 2.1 2.6 4 4 6 rad/s, ten times that a second, and a hundred times that
 /// a second squared.
 [[nodiscard]] RobotPtr walking_robot();
+/// 0.1 to 0.6 rad in a random direction.
+[[nodiscard]] JointVector random_walk_step(int joints, std::mt19937_64& random);
 /// `points` way-points, the start among them, 0.1 to 0.6 rad apart in random directions, each a
 /// stop.
 [[nodiscard]] MotionProgram random_walk(const RobotModel& robot, int points, std::uint64_t seed);

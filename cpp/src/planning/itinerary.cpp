@@ -23,30 +23,26 @@ constexpr int kOutputs = 64;
 constexpr double kLeastWish = 1e-6;
 constexpr double kMostWish = 1e9;
 
-class Walk {
+}  // namespace
+
+class ItineraryWalk::Walk {
  public:
   Walk(RobotPtr robot, const MotionProgram& program)
-      : tools_(robot), robot_(std::move(robot)), program_(program) {
-    builder_.emplace(*robot_, program_.tolerance);
+      : tools_(robot), robot_(std::move(robot)), tolerance_(program.tolerance) {
+    builder_.emplace(*robot_, tolerance_);
+    begun_ = begin(program);
   }
 
-  Itinerary run() {
-    if (!begin()) return std::move(itinerary_);
-    for (step_ = 0; step_ < static_cast<int>(program_.steps.size()); ++step_) {
-      const Step step = in_base(program_.steps[static_cast<size_t>(step_)], frame_);
-      std::visit(*this, step.what);
-    }
-    if (program_.steps.empty()) {
-      Problem problem;
-      problem.code = ErrorCode::kEmptyProgram;
-      problem.message = "the program does nothing: it has no move, wait or output";
-      problem.ways_out = {"add a move, e.g. movej(q)"};
-      itinerary_.report.problems.push_back(std::move(problem));
-    } else if (itinerary_.items.empty() && itinerary_.report.ok()) {
-      itinerary_.items.emplace_back(Dwell{step_ - 1, kRestInstead});
-    }
-    return std::move(itinerary_);
+  [[nodiscard]] bool begun() const { return begun_; }
+
+  void take(const Step& step, int index) {
+    given_ = &step;
+    step_ = index;
+    std::visit(*this, in_base(step, frame_).what);
+    given_ = nullptr;
   }
+
+  Itinerary found() { return std::exchange(itinerary_, {}); }
 
   void operator()(const PtpMove& move) {
     warn_of_correction(move.target);
@@ -116,7 +112,7 @@ class Walk {
       add(error.problem());
       return;
     }
-    builder_.emplace(*robot_, program_.tolerance);
+    builder_.emplace(*robot_, tolerance_);
   }
 
   void operator()(const TimedMove&) {
@@ -126,35 +122,33 @@ class Walk {
   }
 
  private:
-  bool begin() {
-    if (!program_.robot_fingerprint.empty() &&
-        program_.robot_fingerprint != robot_->fingerprint()) {
+  bool begin(const MotionProgram& program) {
+    if (!program.robot_fingerprint.empty() && program.robot_fingerprint != robot_->fingerprint()) {
       add(ErrorCode::kBadProgram,
-          "the program was written for robot \"" + program_.robot + "\" (fingerprint " +
-              program_.robot_fingerprint + "), this is \"" + robot_->name() + "\" (" +
+          "the program was written for robot \"" + program.robot + "\" (fingerprint " +
+              program.robot_fingerprint + "), this is \"" + robot_->name() + "\" (" +
               robot_->fingerprint() + "): chain, tool or limits differ",
           {"load the robot that the program was written for",
            "write the program anew for this robot"});
       return false;
     }
-    const LineTolerance& tolerance = program_.tolerance;
-    const double finest = std::min(tolerance.position, tolerance.angle);
-    if (!(finest >= kFinestTolerance) || !std::isfinite(tolerance.position + tolerance.angle)) {
+    const double finest = std::min(tolerance_.position, tolerance_.angle);
+    if (!(finest >= kFinestTolerance) || !std::isfinite(tolerance_.position + tolerance_.angle)) {
       char text[160];
       std::snprintf(
           text, sizeof text,
           "tolerance of lines and curves: %g m and %g rad; each must be at least %g and finite",
-          tolerance.position, tolerance.angle, kFinestTolerance);
+          tolerance_.position, tolerance_.angle, kFinestTolerance);
       add(ErrorCode::kBadArgument, text);
       return false;
     }
     try {
-      require_within_limits(*robot_, program_.start, "the start");
+      require_within_limits(*robot_, program.start, "the start");
     } catch (const MotionError& error) {
       itinerary_.report.problems.push_back(error.problem());
       return false;
     }
-    at_ = program_.start;
+    at_ = program.start;
     return true;
   }
 
@@ -186,7 +180,7 @@ class Walk {
   template <typename Build>
   void build(const std::optional<Target>& goal, const Build& build_leg,
              const std::function<std::vector<std::string>()>& ways) {
-    const MoveOptions& options = program_.steps[static_cast<size_t>(step_)].options;
+    const MoveOptions& options = given_->options;
     if (!options_are_sound(options)) return;
     try {
       if (lost_) {  // where this leg begins is not known: only its end can be looked at
@@ -281,7 +275,7 @@ class Walk {
   }
 
   void add(Problem problem) {
-    locate(problem, program_, step_);
+    if (given_ != nullptr) locate(problem, given_->source, step_);
     itinerary_.report.problems.push_back(std::move(problem));
   }
   void add(ErrorCode code, std::string message, std::vector<std::string> ways_out = {}) {
@@ -296,26 +290,50 @@ class Walk {
   RobotPtr robot_;  ///< with the tool of the present step
   std::optional<LegBuilder> builder_;
   Pose frame_ = Pose::Identity();  ///< of the present step
-  const MotionProgram& program_;
+  LineTolerance tolerance_;
+  const Step* given_ = nullptr;  ///< the present step
   Itinerary itinerary_;
+  bool begun_ = false;
   JointVector at_;     ///< where the arm is, or was to be
   bool lost_ = false;  ///< at_ is not where the step before was to end
   int step_ = 0;
   int outputs_here_ = 0;  ///< changes since the last motion or wait
 };
 
-}  // namespace
+ItineraryWalk::ItineraryWalk(RobotPtr robot, const MotionProgram& program)
+    : walk_(std::make_unique<Walk>(std::move(robot), program)) {}
+ItineraryWalk::~ItineraryWalk() = default;
+bool ItineraryWalk::begun() const { return walk_->begun(); }
+void ItineraryWalk::take(const Step& step, int index) { walk_->take(step, index); }
+Itinerary ItineraryWalk::found() { return walk_->found(); }
 
 Itinerary make_itinerary(RobotPtr robot, const MotionProgram& program) {
-  return Walk(std::move(robot), program).run();
+  ItineraryWalk walk(std::move(robot), program);
+  if (!walk.begun()) return walk.found();
+  int step = 0;
+  for (const Step& given : program.steps) walk.take(given, step++);
+  Itinerary itinerary = walk.found();
+  if (program.steps.empty()) {
+    Problem problem;
+    problem.code = ErrorCode::kEmptyProgram;
+    problem.message = "the program does nothing: it has no move, wait or output";
+    problem.ways_out = {"add a move, e.g. movej(q)"};
+    itinerary.report.problems.push_back(std::move(problem));
+  } else if (itinerary.items.empty() && itinerary.report.ok()) {
+    itinerary.items.emplace_back(Dwell{step - 1, kRestInstead});
+  }
+  return itinerary;
+}
+
+void locate(Problem& problem, const SourceLine& source, int step) {
+  if (!problem.move) problem.move = step;
+  if (problem.file.empty()) problem.file = source.file;
+  if (!problem.line && source.line > 0) problem.line = source.line;
 }
 
 void locate(Problem& problem, const MotionProgram& program, int step) {
   if (step < 0 || step >= static_cast<int>(program.steps.size())) return;
-  if (!problem.move) problem.move = step;
-  const SourceLine& source = program.steps[static_cast<size_t>(step)].source;
-  if (problem.file.empty()) problem.file = source.file;
-  if (!problem.line && source.line > 0) problem.line = source.line;
+  locate(problem, program.steps[static_cast<size_t>(step)].source, step);
 }
 
 }  // namespace viapoint::planning

@@ -2,6 +2,7 @@
 /// The program's steps with geometry found, and every problem met on the way.
 #pragma once
 
+#include <memory>
 #include <variant>
 #include <vector>
 
@@ -33,11 +34,30 @@ struct Itinerary {
   Report report;
 };
 
-/// Walks the program from its start. After a step that fails it goes on from where that step was
-/// to end, so that one run finds every problem.
+/// Walks a program from its start, step by step. After a step that fails it goes on from where that
+/// step was to end, so that one walk finds every problem.
+class ItineraryWalk {
+ public:
+  /// @param program where it begins, its tolerance and its robot; its steps do not count
+  ItineraryWalk(RobotPtr robot, const MotionProgram& program);
+  ~ItineraryWalk();
+
+  /// False where the program cannot begin: the report says why, and no step may be taken.
+  [[nodiscard]] bool begun() const;
+  void take(const Step& step, int index);
+  /// What was found since the last call.
+  [[nodiscard]] Itinerary found();
+
+ private:
+  class Walk;
+  std::unique_ptr<Walk> walk_;
+};
+
+/// The whole of a program.
 [[nodiscard]] Itinerary make_itinerary(RobotPtr robot, const MotionProgram& program);
 
 /// Adds move and source line to a problem that lacks them.
+void locate(Problem& problem, const SourceLine& source, int step);
 void locate(Problem& problem, const MotionProgram& program, int step);
 
 }  // namespace viapoint::planning

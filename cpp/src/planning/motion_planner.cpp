@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "planning/itinerary.hpp"
+#include "planning/motion_parts.hpp"
 #include "planning/section.hpp"
 #include "planning/tool_changes.hpp"
 #include "planning/tool_proof.hpp"
@@ -22,59 +23,16 @@ using planning::Leg;
 using planning::Output;
 using planning::Section;
 
-/// How long the arm rests after its last move when outputs are still to change [s].
-constexpr double kLastOutputs = 0.002;
-
-TrajectoryPiece rest_at(const JointVector& q, double seconds, int step) {
-  TrajectoryPiece piece;
-  piece.duration = seconds;
-  piece.joints = static_cast<int>(q.size());
-  piece.move = step;
-  for (int i = 0; i < q.size(); ++i) piece.path[0][static_cast<size_t>(i)] = q[i];
-  piece.timing[1] = 1.0;
-  return piece;
-}
-
-/// Puts each change of output on the first piece of a later step: in the middle of the corner
-/// where the point is passed, at the end of the stop where the arm rests there.
-void attach_outputs(std::vector<TrajectoryPiece>& pieces, const std::vector<Output>& outputs,
-                    const JointVector& end) {
-  size_t next = 0;
-  for (TrajectoryPiece& piece : pieces) {
-    while (next < outputs.size() && outputs[next].step < piece.move &&
-           piece.outputs < kMaxOutputsAPiece) {
-      piece.output[static_cast<size_t>(piece.outputs++)] = outputs[next++].change;
-    }
-  }
-  if (next == outputs.size()) return;
-  TrajectoryPiece last = rest_at(end, kLastOutputs, outputs.back().step);
-  while (next < outputs.size() && last.outputs < kMaxOutputsAPiece) {
-    last.output[static_cast<size_t>(last.outputs++)] = outputs[next++].change;
-  }
+/// The outputs of all pieces, and a last piece for those that nothing follows.
+void attach_all(std::vector<TrajectoryPiece>& pieces, const std::vector<Output>& outputs,
+                const JointVector& end) {
+  const size_t attached = planning::attach_outputs(pieces, outputs).size();
+  if (attached == outputs.size()) return;
+  const int after = outputs.back().step + 1;
+  TrajectoryPiece last = planning::rest_at(end, planning::kLastOutputs, after);
+  (void)planning::attach_outputs({&last, 1}, std::span(outputs).subspan(attached));
+  last.move = outputs.back().step;
   pieces.push_back(last);
-}
-
-Problem warning_of(const CornerOutcome& corner) {
-  Problem problem;
-  problem.severity = Severity::kWarning;
-  problem.code = corner.stopped ? ErrorCode::kZoneIsStop : ErrorCode::kZoneShrunk;
-  problem.value = corner.used;
-  problem.limit = corner.asked.size;
-  problem.message = corner.stopped ? "the zone became a stop: " : "the zone was shrunk: ";
-  problem.message += corner.reason;
-  return problem;
-}
-
-/// Smallest manipulability at the pieces' ends and middles.
-double least_manipulability(const RobotModel& robot, std::span<const TrajectoryPiece> pieces) {
-  if (!robot.has_kinematics()) return 0.0;
-  double least = std::numeric_limits<double>::infinity();
-  for (const TrajectoryPiece& piece : pieces) {
-    for (const double share : {0.0, 0.5, 1.0}) {
-      least = std::min(least, robot.manipulability(piece.at(share * piece.duration).q));
-    }
-  }
-  return least;
 }
 
 class Composer {
@@ -92,13 +50,13 @@ class Composer {
       } else if (const auto* dwell = std::get_if<Dwell>(&item)) {
         flush_legs();
         if (dwell->seconds >= planning::kShortestWait)
-          pieces_.push_back(rest_at(at, dwell->seconds, dwell->step));
+          pieces_.push_back(planning::rest_at(at, dwell->seconds, dwell->step));
       } else {
         outputs_.push_back(std::get<Output>(item));
       }
     }
     flush_legs();
-    attach_outputs(pieces_, outputs_, at);
+    attach_all(pieces_, outputs_, at);
     return finish();
   }
 
@@ -116,16 +74,12 @@ class Composer {
 
   /// A zone is a promise about one tool point, so the arm rests where the tool changes.
   void change_tool(const RobotPtr& arm) {
-    const bool blended = !legs_.empty() && legs_.back().options.zone.kind != ZoneKind::kFine;
-    CornerOutcome stop;
-    if (blended) {
-      stop.move = legs_.back().step;
-      stop.asked = legs_.back().options.zone;
-      stop.stopped = true;
-      stop.reason = "the tool changes at this point";
+    std::optional<CornerOutcome> stop;
+    if (!legs_.empty() && legs_.back().options.zone.kind != ZoneKind::kFine) {
+      stop = planning::stop_for_tool(legs_.back().step, legs_.back().options.zone);
     }
     flush_legs();
-    if (blended) motion_.corners.push_back(std::move(stop));
+    if (stop) motion_.corners.push_back(std::move(*stop));
     look_at_manipulability();
     arm_ = arm;
   }
@@ -134,7 +88,7 @@ class Composer {
   void look_at_manipulability() {
     const auto fresh = std::span(pieces_).subspan(looked_at_);
     if (!fresh.empty()) {
-      manipulability_ = std::min(manipulability_, least_manipulability(*arm_, fresh));
+      manipulability_ = std::min(manipulability_, planning::least_manipulability(*arm_, fresh));
     }
     looked_at_ = pieces_.size();
   }
@@ -165,7 +119,7 @@ class Composer {
     motion_.report = itinerary_.report;
     for (const CornerOutcome& corner : motion_.corners) {
       if (corner.reason.empty()) continue;
-      Problem problem = warning_of(corner);
+      Problem problem = planning::warning_of(corner);
       planning::locate(problem, program_, corner.move);
       motion_.report.problems.push_back(std::move(problem));
     }

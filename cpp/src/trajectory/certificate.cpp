@@ -56,6 +56,12 @@ class Walk {
     }
   }
 
+  /// The first piece goes on from this state.
+  void go_on_from(const JointState& state) {
+    before_ = state;
+    started_ = true;
+  }
+
   void add(const TrajectoryPiece& piece, std::size_t index) {
     if (const auto fault = find_fault(piece, limits_.joints())) {
       report(piece, index, *fault);
@@ -267,12 +273,14 @@ class Walk {
 
 }  // namespace
 
-Certificate certify(std::span<const TrajectoryPiece> pieces, const JointLimits& limits) {
+Certificate certify(std::span<const TrajectoryPiece> pieces, const JointLimits& limits,
+                    const std::optional<JointState>& from) {
   limits.validate();
   if (pieces.empty()) {
     throw MotionError(ErrorCode::kBadArgument, "there is no motion to prove: no pieces");
   }
   Walk walk(limits);
+  if (from) walk.go_on_from(*from);
   for (std::size_t i = 0; i < pieces.size(); ++i) walk.add(pieces[i], i);
   return std::move(walk).finish();
 }

@@ -22,7 +22,8 @@ void add(const TrajectoryPiece& piece, OutputEffect& effect) {
 
 }  // namespace
 
-Trajectory::Trajectory(std::vector<TrajectoryPiece> pieces, const JointLimits& limits)
+Trajectory::Trajectory(std::vector<TrajectoryPiece> pieces, const JointLimits& limits,
+                       const std::optional<JointState>& from)
     : pieces_(std::move(pieces)) {
   if (pieces_.empty()) {
     throw MotionError(ErrorCode::kBadArgument, "a trajectory needs at least one piece, got none");
@@ -46,7 +47,7 @@ Trajectory::Trajectory(std::vector<TrajectoryPiece> pieces, const JointLimits& l
                                                    " joints, its limits have " +
                                                    std::to_string(limits.joints()));
   }
-  certificate_ = certify(pieces_, limits);
+  certificate_ = certify(pieces_, limits, from);
 }
 
 size_t Trajectory::piece_at(double t) const {

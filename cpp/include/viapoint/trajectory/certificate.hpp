@@ -2,6 +2,7 @@
 /// The proof that a motion keeps its limits: bounds on the pieces' own polynomials, not on samples.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -34,7 +35,8 @@ struct Certificate {
   std::vector<Extremum> velocity, acceleration, jerk;  ///< (n,)
   JointVector position_min,
       position_max;  ///< bounds within 1e-9 of what is reached [rad or m], (n,)
-  double start_speed = 0.0, end_speed = 0.0;  ///< largest |q̇| at the ends
+  /// Largest |q̇| at the ends; 0 at the start of a motion that goes on from another.
+  double start_speed = 0.0, end_speed = 0.0;
   double start_acceleration = 0.0, end_acceleration = 0.0;
   /// Largest step of q, q̇, q̈ between neighbouring pieces.
   double position_jump = 0.0, velocity_jump = 0.0, acceleration_jump = 0.0;
@@ -67,9 +69,12 @@ inline constexpr double kLimitSlack = 1e-6;
 /// in velocity or acceleration (kDiscontinuous); more than that share of velocity or acceleration
 /// at an end (kNotAtRest); a piece that is malformed, not finite, or whose u leaves [0, 1] by more
 /// than 1e-9 (kBadArgument).
+/// @param from where the motion goes on from, if not from rest: its start must be that state as a
+///        piece must begin where the one before ended
 /// @throws MotionError(kBadLimits) from limits.validate(); (kBadArgument) for no pieces at all
 /// Real-time: not. Cost: linear in pieces. Threads: any.
 [[nodiscard]] Certificate certify(std::span<const TrajectoryPiece> pieces,
-                                  const JointLimits& limits);
+                                  const JointLimits& limits,
+                                  const std::optional<JointState>& from = std::nullopt);
 
 }  // namespace viapoint

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "viapoint/core/joint_limits.hpp"
@@ -23,11 +24,12 @@ struct OutputEffect {
 class Trajectory {
  public:
   Trajectory() = default;
-  /// Certifies against `limits`. Limits that are broken do not throw: they are the certificate's
-  /// problems.
+  /// Certifies against `limits`, from rest or from the state `from`. Limits that are broken do not
+  /// throw: they are the certificate's problems.
   /// @throws MotionError(kBadArgument) for no pieces, and for a piece of differing joints, not
   ///   finite, of no duration or with more outputs than it can hold; kBadLimits
-  Trajectory(std::vector<TrajectoryPiece> pieces, const JointLimits& limits);
+  Trajectory(std::vector<TrajectoryPiece> pieces, const JointLimits& limits,
+             const std::optional<JointState>& from = std::nullopt);
 
   [[nodiscard]] int joints() const { return pieces_.empty() ? 0 : pieces_.front().joints; }
   [[nodiscard]] double duration() const { return duration_; }

@@ -1,0 +1,63 @@
+#include "planning/motion_parts.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace viapoint::planning {
+
+TrajectoryPiece rest_at(const JointVector& q, double seconds, int step) {
+  TrajectoryPiece piece;
+  piece.duration = seconds;
+  piece.joints = static_cast<int>(q.size());
+  piece.move = step;
+  for (int i = 0; i < q.size(); ++i) piece.path[0][static_cast<size_t>(i)] = q[i];
+  piece.timing[1] = 1.0;
+  return piece;
+}
+
+std::vector<size_t> attach_outputs(std::span<TrajectoryPiece> pieces,
+                                   std::span<const Output> outputs) {
+  std::vector<size_t> places;
+  for (size_t k = 0; k < pieces.size() && places.size() < outputs.size(); ++k) {
+    TrajectoryPiece& piece = pieces[k];
+    while (places.size() < outputs.size() && outputs[places.size()].step < piece.move &&
+           piece.outputs < kMaxOutputsAPiece) {
+      piece.output[static_cast<size_t>(piece.outputs++)] = outputs[places.size()].change;
+      places.push_back(k);
+    }
+  }
+  return places;
+}
+
+Problem warning_of(const CornerOutcome& corner) {
+  Problem problem;
+  problem.severity = Severity::kWarning;
+  problem.code = corner.stopped ? ErrorCode::kZoneIsStop : ErrorCode::kZoneShrunk;
+  problem.value = corner.used;
+  problem.limit = corner.asked.size;
+  problem.message = corner.stopped ? "the zone became a stop: " : "the zone was shrunk: ";
+  problem.message += corner.reason;
+  return problem;
+}
+
+CornerOutcome stop_for_tool(int move, const Zone& asked) {
+  CornerOutcome stop;
+  stop.move = move;
+  stop.asked = asked;
+  stop.stopped = true;
+  stop.reason = "the tool changes at this point";
+  return stop;
+}
+
+double least_manipulability(const RobotModel& robot, std::span<const TrajectoryPiece> pieces) {
+  if (!robot.has_kinematics()) return 0.0;
+  double least = std::numeric_limits<double>::infinity();
+  for (const TrajectoryPiece& piece : pieces) {
+    for (const double share : {0.0, 0.5, 1.0}) {
+      least = std::min(least, robot.manipulability(piece.at(share * piece.duration).q));
+    }
+  }
+  return least;
+}
+
+}  // namespace viapoint::planning

@@ -1,0 +1,327 @@
+#include "viapoint/planning/stream_planner.hpp"
+
+#include <algorithm>
+#include <deque>
+#include <iterator>
+#include <utility>
+#include <variant>
+
+#include "planning/itinerary.hpp"
+#include "planning/motion_parts.hpp"
+#include "planning/path_timer.hpp"
+#include "planning/section.hpp"
+#include "planning/section_builder.hpp"
+#include "planning/tool_proof.hpp"
+
+namespace viapoint {
+namespace {
+
+using planning::Dwell;
+using planning::Item;
+using planning::Leg;
+using planning::Output;
+using planning::SectionPart;
+
+/// Legs that the first chunk of a section has at least, and that every later one brings: few at
+/// first, so that motion begins soon.
+constexpr int kFirstLegs = 3;
+constexpr int kMostLegs = 24;
+/// Pieces of path that a chunk goes on by at most.
+constexpr size_t kMostPieces = 96;
+
+/// What is known of a step until its motion has been handed out.
+struct Known {
+  int step = 0;
+  SourceLine source;
+  double position_deviation = 0.0, angle_deviation = 0.0;
+};
+
+/// A part of a section, or a rest, of one arm.
+struct Stage {
+  RobotPtr arm;
+  std::variant<SectionPart, TrajectoryPiece> what;
+};
+
+}  // namespace
+
+class StreamPlanner::Line {
+ public:
+  Line(RobotPtr robot, const MotionProgram& program)
+      : arm_(robot), at_(program.start), walk_(std::move(robot), program) {
+    if (!walk_.begun()) throw MotionError(walk_.found().report.problems.front());
+    builder_.emplace(*arm_);
+    for (const Step& step : program.steps) add(step);
+  }
+
+  void add(const Step& step) {
+    if (ended_) {
+      throw MotionError(ErrorCode::kBadProgram, "the program has ended: no step can follow",
+                        {"begin another stream where this one ends"});
+    }
+    const int index = steps_++;
+    known_.push_back({index, step.source});
+    walk_.take(step, index);
+    planning::Itinerary found = walk_.found();
+    for (Problem& problem : found.report.problems) {
+      if (problem.severity == Severity::kError) {
+        end();
+        throw MotionError(std::move(problem));
+      }
+      warnings_.push_back(std::move(problem));
+    }
+    for (Item& item : found.items) take(std::move(item));
+  }
+
+  void end() {
+    if (ended_) return;
+    ended_ = true;
+    rest_here();
+  }
+
+  std::optional<MotionChunk> next(double not_before, bool at_once) {
+    collect();
+    if (ready_.empty()) return timer_ ? std::nullopt : at_last();
+    if (std::holds_alternative<TrajectoryPiece>(ready_.front().what)) return rest();
+    return motion(not_before, at_once);
+  }
+
+  [[nodiscard]] bool done() const { return ended_ && handed_out_last_; }
+  [[nodiscard]] int stops() const { return stops_; }
+
+ private:
+  void take(Item item) {
+    if (auto* leg = std::get_if<Leg>(&item)) {
+      if (leg->robot != arm_) change_tool(leg->robot);
+      known_.back().position_deviation = leg->position_deviation;
+      known_.back().angle_deviation = leg->angle_deviation;
+      zone_ = leg->options.zone;
+      last_leg_ = leg->step;
+      at_ = leg->goal;
+      builder_->add(std::move(*leg));
+    } else if (const auto* dwell = std::get_if<Dwell>(&item)) {
+      rest_here();
+      if (dwell->seconds >= planning::kShortestWait) {
+        ready_.push_back({arm_, planning::rest_at(at_, dwell->seconds, dwell->step)});
+      }
+    } else {
+      outputs_.push_back(std::get<Output>(item));
+    }
+  }
+
+  /// A zone is a promise about one tool point, so the arm rests where the tool changes.
+  void change_tool(const RobotPtr& arm) {
+    if (last_leg_ >= 0 && zone_.kind != ZoneKind::kFine) {
+      tool_changes_.push_back(planning::stop_for_tool(last_leg_, zone_));
+    }
+    rest_here();
+    arm_ = arm;
+    builder_.emplace(*arm_);
+  }
+
+  void rest_here() {
+    builder_->end();
+    last_leg_ = -1;
+    collect();
+  }
+
+  void collect() {
+    for (SectionPart& part : builder_->take()) {
+      auto* open = ready_.empty() ? nullptr : std::get_if<SectionPart>(&ready_.back().what);
+      if (open == nullptr || open->ends) {
+        ready_.push_back({arm_, std::move(part)});
+      } else {
+        for (const JointPiece& piece : part.path.pieces()) open->path.append(piece);
+        open->corners.insert(open->corners.end(), part.corners.begin(), part.corners.end());
+        open->ends = part.ends;
+      }
+    }
+  }
+
+  /// All there is of the section under way, as far as one window goes, if that is enough.
+  std::optional<MotionChunk> motion(double not_before, bool at_once) {
+    auto& part = std::get<SectionPart>(ready_.front().what);
+    const size_t left = part.path.pieces().size() - used_;
+    const bool all = left <= kMostPieces;
+    const bool ends = all && part.ends;
+    const int legs = static_cast<int>(part.corners.size());
+    if (all && !ends && legs < (at_once ? 1 : wanted_legs_)) return std::nullopt;
+    MotionChunk chunk;
+    if (!timer_) {
+      section_arm_ = ready_.front().arm;
+      timer_.emplace(*section_arm_);
+      section_begun_ = false;
+    }
+    const auto from = part.path.pieces().begin() + static_cast<std::ptrdiff_t>(used_);
+    const size_t count = std::min(left, kMostPieces);
+    JointPath window;
+    std::for_each_n(from, count, [&](const JointPiece& piece) { window.append(piece); });
+    used_ += count;
+    timer_->append(window);
+    chunk.corners = std::exchange(part.corners, {});
+    if (all) {
+      ready_.pop_front();
+      used_ = 0;
+    }
+    const int stops_before = timer_->stops();
+    const double leave =
+        timer_->extend(all && !ends ? builder_->certain() : JointPath(), not_before);
+    stops_ += timer_->stops() - stops_before;
+    chunk.begin = section_begun_ ? leave : duration_;
+    section_begun_ = true;
+    wanted_legs_ = ends ? kFirstLegs : std::min(kMostLegs, 2 * wanted_legs_);
+    finish(chunk, *section_arm_, timer_->timing().pieces, timer_->tool());
+    if (ends) {
+      timer_.reset();
+      chunk.corners.insert(chunk.corners.end(), tool_changes_.begin(), tool_changes_.end());
+      tool_changes_.clear();
+    }
+    warn_of(chunk);
+    return chunk;
+  }
+
+  MotionChunk rest() {
+    MotionChunk chunk;
+    chunk.begin = duration_;
+    const Stage stage = std::move(ready_.front());
+    ready_.pop_front();
+    finish(chunk, *stage.arm, {std::get<TrajectoryPiece>(stage.what)});
+    warn_of(chunk);
+    return chunk;
+  }
+
+  /// What is left when all motion has been handed out: outputs that change at the end, and a short
+  /// rest where the program does not move at all.
+  std::optional<MotionChunk> at_last() {
+    if (!ended_ || handed_out_last_ || steps_ == 0) return std::nullopt;
+    drop_passed(duration_);
+    if (handed_out_ && outputs_.empty()) return std::nullopt;
+    std::vector<TrajectoryPiece> pieces;
+    const size_t rests =
+        std::max<size_t>(1, (outputs_.size() + kMaxOutputsAPiece - 1) / kMaxOutputsAPiece);
+    for (size_t k = 0; k < rests; ++k) {
+      pieces.push_back(planning::rest_at(at_, planning::kLastOutputs, steps_));
+    }
+    MotionChunk chunk;
+    chunk.begin = duration_;
+    finish(chunk, *arm_, std::move(pieces));
+    warn_of(chunk);
+    return chunk;
+  }
+
+  /// Outputs that have changed before the chunk handed out last is left at `leave`.
+  void drop_passed(double leave) {
+    size_t passed = 0;
+    // At the very moment the next chunk changes it.
+    while (passed < output_times_.size() && output_times_[passed] < leave) ++passed;
+    outputs_.erase(outputs_.begin(), outputs_.begin() + static_cast<std::ptrdiff_t>(passed));
+    output_times_.clear();
+  }
+
+  void finish(MotionChunk& chunk, const RobotModel& arm, std::vector<TrajectoryPiece> pieces,
+              const std::vector<ToolLimits>& tool = {}) {
+    drop_passed(chunk.begin);
+    const std::vector<size_t> places = planning::attach_outputs(pieces, outputs_);
+    const std::optional<JointState> from = state_at(chunk.begin);
+    const double manipulability = planning::least_manipulability(arm, pieces);
+    chunk.motion = Trajectory(std::move(pieces), arm.limits(), from);
+    for (const size_t place : places) output_times_.push_back(chunk.motion.start_of(place));
+    duration_ = chunk.motion.duration();
+    last_ = chunk.motion.pieces();
+
+    Certificate& certificate = chunk.motion.certificate();
+    certificate.manipulability = manipulability;
+    planning::ToolProof proof;
+    if (!tool.empty()) proof.add(arm.forward(), chunk.motion.pieces(), tool, 0.0);
+    certificate.tool = proof.extrema();
+    for (Problem& problem : planning::problems_of(certificate.tool)) {
+      certificate.problems.push_back(std::move(problem));
+    }
+    const int first = chunk.motion.pieces().front().move;
+    while (known_.size() > 1 && known_.front().step < first) known_.pop_front();
+    for (const Known& known : known_) {
+      if (known.step > chunk.motion.pieces().back().move) break;
+      certificate.path_deviation = std::max(certificate.path_deviation, known.position_deviation);
+      certificate.angle_deviation = std::max(certificate.angle_deviation, known.angle_deviation);
+    }
+    for (const CornerOutcome& corner : chunk.corners) {
+      certificate.zone_deviation = std::max(certificate.zone_deviation, corner.cut);
+    }
+    for (Problem problem : certificate.problems) {
+      locate(problem);
+      throw MotionError(std::move(problem));
+    }
+    handed_out_ = true;
+  }
+
+  /// The state of the chunk handed out last at a time of it; nothing before the first one.
+  [[nodiscard]] std::optional<JointState> state_at(double time) const {
+    if (last_.empty()) return std::nullopt;
+    size_t k = 0;
+    for (; k + 1 < last_.size() && time >= last_[k].duration; ++k) time -= last_[k].duration;
+    return last_[k].at(std::min(time, last_[k].duration));
+  }
+
+  void warn_of(MotionChunk& chunk) {
+    chunk.warnings = std::exchange(warnings_, {});
+    for (const CornerOutcome& corner : chunk.corners) {
+      if (corner.reason.empty()) continue;
+      Problem problem = planning::warning_of(corner);
+      problem.move = corner.move;
+      locate(problem);
+      chunk.warnings.push_back(std::move(problem));
+    }
+    chunk.last = ended_ && ready_.empty() && !timer_ && output_times_.size() == outputs_.size();
+    handed_out_last_ = chunk.last;
+  }
+
+  void locate(Problem& problem) const {
+    for (const Known& known : known_) {
+      if (known.step == problem.move.value_or(-1)) {
+        planning::locate(problem, known.source, known.step);
+      }
+    }
+  }
+
+  RobotPtr arm_;    ///< with the tool of the steps that come
+  JointVector at_;  ///< where the last step ends
+  planning::ItineraryWalk walk_;
+  std::optional<planning::SectionBuilder> builder_;
+  int steps_ = 0;
+  bool ended_ = false;
+  int last_leg_ = -1;  ///< since the arm rested
+  Zone zone_;          ///< of it
+
+  std::deque<Stage> ready_;      ///< decided, not handed out
+  size_t used_ = 0;              ///< pieces of path of the first that have been handed out
+  std::vector<Output> outputs_;  ///< not passed yet
+  std::deque<Known> known_;      ///< steps not passed yet
+  std::vector<Problem> warnings_;
+  std::vector<CornerOutcome> tool_changes_;
+
+  std::optional<planning::PathTimer> timer_;  ///< of the section under way
+  RobotPtr section_arm_;
+  bool section_begun_ = false;
+  int wanted_legs_ = kFirstLegs;
+  int stops_ = 0;
+
+  bool handed_out_ = false, handed_out_last_ = false;
+  double duration_ = 0.0;              ///< of the chunk handed out last
+  std::vector<double> output_times_;   ///< in it, of the first of outputs_
+  std::vector<TrajectoryPiece> last_;  ///< its pieces
+};
+
+StreamPlanner::StreamPlanner(RobotPtr robot, const MotionProgram& program)
+    : line_(std::make_unique<Line>(std::move(robot), program)) {}
+StreamPlanner::~StreamPlanner() = default;
+StreamPlanner::StreamPlanner(StreamPlanner&&) noexcept = default;
+StreamPlanner& StreamPlanner::operator=(StreamPlanner&&) noexcept = default;
+
+void StreamPlanner::add(const Step& step) { line_->add(step); }
+void StreamPlanner::end() { line_->end(); }
+std::optional<MotionChunk> StreamPlanner::next(double not_before, bool at_once) {
+  return line_->next(not_before, at_once);
+}
+bool StreamPlanner::done() const { return line_->done(); }
+int StreamPlanner::stops() const { return line_->stops(); }
+
+}  // namespace viapoint
