@@ -3,7 +3,8 @@
 Subjects: ``tick`` (one cycle of the interpolator), ``plan`` (planning a move), ``certificate``
 (proving a motion), ``walk`` (timing of long paths), ``insertion`` (tool curves as joints, every
 proof checked), ``kinematics`` (inverse kinematics), ``tracking`` (tool lines followed pose by
-pose), all in C++ by viapoint-bench; ``sample`` (states of a motion into numpy arrays) in Python;
+pose), all in C++ by viapoint-bench; ``sample`` (states of a motion into numpy arrays) and
+``programs`` (random programs planned and proven) in Python;
 ``profiles`` (state to state) beside Ruckig, ``paths`` (timing along paths, corners) beside
 toppra, copp and justblend. Each has its place in tools/benches.
 """
@@ -14,11 +15,13 @@ import json
 import sys
 from pathlib import Path
 
-from benches import core, documents, kinematics, paths, profiles, sampling, tables
+from benches import core, documents, kinematics, paths, profiles, programs, sampling, tables
 from benches.machine import ROOT, machine
 from benches.tables import Row
 
-SUBJECTS = (*core.SUBJECTS, "sample", "profiles", "paths")
+SUBJECTS = (*core.SUBJECTS, "sample", "programs", "profiles", "paths")
+BY_THE_MILLION = ("profiles", "programs")
+PROGRAMS = 400
 
 
 def measure(subject: str, options: argparse.Namespace) -> tuple[list[Row], list[Row]]:
@@ -38,6 +41,8 @@ def measure(subject: str, options: argparse.Namespace) -> tuple[list[Row], list[
         return sampling.measure(quick=options.quick), []
     if subject == "paths":
         return paths.measure(options.program.parent, quick=options.quick), []
+    if subject == "programs":
+        return programs.measure(options.problems or PROGRAMS, quick=options.quick), []
     if options.problems:
         return profiles.measure_sweep(options.program.parent, options.problems), []
     return profiles.measure(options.program.parent, quick=options.quick)
@@ -57,7 +62,7 @@ def parse(arguments: list[str]) -> argparse.Namespace:
         "--problems",
         type=int,
         metavar="N",
-        help="profiles: instead of the tables, solve and judge that many problems",
+        help="profiles: solve and judge so many, instead of the tables; programs: plan so many",
     )
     parser.add_argument(
         "--program",
@@ -70,8 +75,9 @@ def parse(arguments: list[str]) -> argparse.Namespace:
         parser.error(f"no subject {', '.join(unknown)}; there are {', '.join(SUBJECTS)}")
     if options.docs and options.subjects:
         parser.error("--docs writes one run into all documents: name no subject")
-    if options.problems is not None and (options.problems < 1 or options.subjects != ["profiles"]):
-        parser.error("--problems goes with profiles alone, and is at least 1")
+    alone = [*options.subjects] in ([name] for name in BY_THE_MILLION)
+    if options.problems is not None and (options.problems < 1 or not alone):
+        parser.error("--problems goes with profiles or programs alone, and is at least 1")
     return options
 
 

@@ -63,7 +63,7 @@ def test_a_number_of_problems_goes_with_profiles_alone(
 ):
     with pytest.raises(SystemExit):
         run_bench.main(arguments)
-    assert "--problems goes with profiles alone" in capsys.readouterr().err
+    assert "--problems goes with profiles or programs alone" in capsys.readouterr().err
 
 
 def test_the_run_by_the_million_passes_failures_on_and_lays_its_figures_out(
