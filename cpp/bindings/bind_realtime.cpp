@@ -47,7 +47,18 @@ struct LogHandle {
   int joints = 0;
 };
 
-LoopHandle make_loop(const RobotHandle& robot, const Vector& start, double cycle) {
+GuardOptions guard_of(const RobotHandle& robot, double tool_speed, const Eigen::Vector3d& box_min,
+                      const Eigen::Vector3d& box_max) {
+  GuardOptions guard;
+  if (robot.robot->has_kinematics()) guard.kinematics = robot.robot->forward();
+  guard.tool_speed = tool_speed;
+  guard.box_min = box_min;
+  guard.box_max = box_max;
+  return guard;
+}
+
+LoopHandle make_loop(const RobotHandle& robot, const Vector& start, double cycle, double tool_speed,
+                     const Eigen::Vector3d& box_min, const Eigen::Vector3d& box_max) {
   if (!(cycle >= 1e-4) || !(cycle <= 1.0)) {
     throw MotionError(ErrorCode::kBadArgument,
                       "cycle is " + std::to_string(cycle) + " s; allowed are 0.0001 s to 1 s.");
@@ -56,30 +67,39 @@ LoopHandle make_loop(const RobotHandle& robot, const Vector& start, double cycle
   const JointVector q = joints_from(start, "start", joints);
   LoopOptions options;
   options.cycle = std::chrono::nanoseconds(std::llround(cycle * 1e9));
+  options.guard = guard_of(robot, tool_speed, box_min, box_max);
   const Release release;
   return {std::make_shared<ControllerLoop>(std::make_unique<SimulatedDrive>(q),
                                            robot.robot->limits(), options),
           joints};
 }
 
-TimedCommand command_from(double time, const std::string& kind, double value) {
+/// @param values the share of an override, the velocities of a jog, else nothing
+TimedCommand command_from(double time, const std::string& kind, const Vector& values, int joints) {
   using Kind = TimedCommand::Kind;
   if (!std::isfinite(time) || time < 0.0) {
     throw MotionError(ErrorCode::kBadArgument,
                       "A command's time is " + std::to_string(time) + " s; it must be 0 or later.");
   }
+  if (kind == "jog") {
+    return {time, Kind::kJog, 0.0, joints_from(values, "a jog's velocity", joints)};
+  }
   if (kind == "override") {
+    const double value = values.size() == 1 ? values[0] : std::nan("");
     if (!(value >= 0.0 && value <= 1.0)) {
       throw MotionError(ErrorCode::kBadArgument,
                         "An override is " + std::to_string(value) + "; it must be in [0, 1].");
     }
-    return {time, Kind::kOverride, value};
+    return {time, Kind::kOverride, value, {}};
   }
-  if (kind == "pause") return {time, Kind::kPause, 0.0};
-  if (kind == "resume") return {time, Kind::kResume, 0.0};
-  if (kind == "stop") return {time, Kind::kStop, 0.0};
+  if (kind == "pause") return {time, Kind::kPause, 0.0, {}};
+  if (kind == "resume") return {time, Kind::kResume, 0.0, {}};
+  if (kind == "stop") return {time, Kind::kStop, 0.0, {}};
+  if (kind == "step") return {time, Kind::kStep, 0.0, {}};
+  if (kind == "backward") return {time, Kind::kBackward, 0.0, {}};
   throw MotionError(ErrorCode::kBadArgument, "\"" + kind + "\" is no command.",
-                    {"Use \"override\", \"pause\", \"resume\" or \"stop\"."});
+                    {"Use \"override\", \"pause\", \"resume\", \"stop\", \"step\", \"backward\" or "
+                     "\"jog\"."});
 }
 
 template <typename T, typename Get>
@@ -124,7 +144,7 @@ Columns columns_of(const LogHandle& log) {
 
 std::vector<std::string> run_states() {
   std::vector<std::string> states;
-  for (int i = 0; i <= static_cast<int>(RunState::kJogging); ++i) {
+  for (int i = 0; i <= static_cast<int>(RunState::kReturning); ++i) {
     states.emplace_back(to_string(static_cast<RunState>(i)));
   }
   return states;
@@ -174,7 +194,15 @@ void bind_job(py::module_& m) {
       .def(
           "resume", [](const JobHandle& j) { j.job->resume(); }, py::call_guard<Release>())
       .def(
-          "stop", [](const JobHandle& j) { j.job->stop(); }, py::call_guard<Release>())
+          "step", [](const JobHandle& j) { j.job->step(); }, py::call_guard<Release>())
+      .def(
+          "backward", [](const JobHandle& j) { j.job->backward(); }, py::call_guard<Release>())
+      .def(
+          "stop",
+          [](const JobHandle& j, int category) {
+            j.job->stop(category == 1 ? StopCategory::kRelease : StopCategory::kHold);
+          },
+          py::arg("category"), py::call_guard<Release>())
       .def_property_readonly(
           "state", [](const JobHandle& j) { return std::string(to_string(j.job->state())); })
       .def_property_readonly("nominal_time",
@@ -196,7 +224,7 @@ void bind_realtime(py::module_& m) {
   bind_job(m);
   py::class_<LoopHandle>(m, "ControllerLoop", "The 2 ms loop over a simulated drive.")
       .def(py::init(&make_loop), py::arg("robot"), py::arg("start"), py::kw_only(),
-           py::arg("cycle"))
+           py::arg("cycle"), py::arg("tool_speed"), py::arg("box_min"), py::arg("box_max"))
       .def(
           "run",
           [](const LoopHandle& l, const MotionHandle& motion) {
@@ -224,6 +252,10 @@ void bind_realtime(py::module_& m) {
       .def_property_readonly("position",
                              [](const LoopHandle& l) { return Vector(l.open()->position()); })
       .def_property_readonly("busy", [](const LoopHandle& l) { return l.open()->busy(); })
+      .def_property_readonly("fault", [](const LoopHandle& l) { return l.open()->fault(); })
+      .def_property_readonly(
+          "fault_cycles",
+          [](const LoopHandle& l) { return LogHandle{l.open()->fault_cycles(), l.joints}; })
       .def_property_readonly("is_open", [](const LoopHandle& l) { return l.loop != nullptr; })
       .def_property_readonly("shortcomings",
                              [](const LoopHandle& l) { return l.open()->shortcomings(); })
@@ -256,10 +288,10 @@ void bind_realtime(py::module_& m) {
   m.def(
       "simulate",
       [](const MotionHandle& motion,
-         const std::vector<std::tuple<double, std::string, double>>& commands, double cycle) {
+         const std::vector<std::tuple<double, std::string, Vector>>& commands, double cycle) {
         std::vector<TimedCommand> timed;
-        for (const auto& [time, kind, value] : commands) {
-          timed.push_back(command_from(time, kind, value));
+        for (const auto& [time, kind, values] : commands) {
+          timed.push_back(command_from(time, kind, values, motion.trajectory->joints()));
         }
         const Release release;
         return LogHandle{simulate(*motion.trajectory, motion.robot->limits(), std::move(timed),

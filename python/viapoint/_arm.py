@@ -43,6 +43,8 @@ class Loop(Protocol):
     @property
     def is_open(self) -> bool: ...
     @property
+    def fault(self) -> str: ...
+    @property
     def shortcomings(self) -> list[str]: ...
     def close(self) -> None: ...
 
@@ -155,7 +157,8 @@ class Arm:
         Raises
         ------
         BusyError
-            A run is under way, also one that pauses: the arm jogs between runs.
+            A run is under way: the arm jogs between runs, and in one that rests after
+            `Job.pause`; `Job.resume` then brings it back to the path first.
         VelocityLimitError
             A joint is asked for more than its velocity limit.
         BadArgumentError
@@ -209,6 +212,11 @@ class Arm:
         return self._loop.busy
 
     @property
+    def fault(self) -> str:
+        """What has failed, in a sentence; empty while nothing has. Connect again after it."""
+        return self._loop.fault
+
+    @property
     def shortcomings(self) -> list[str]:
         """What real-time right could not be had, one line each, and what would give it."""
         return self._loop.shortcomings
@@ -246,6 +254,8 @@ def connect(
     start: ArrayLike | None = None,
     robot: Robot | None = None,
     cycle: float = CYCLE,
+    tool_speed: float | None = None,
+    workspace: tuple[ArrayLike, ArrayLike] | None = None,
 ) -> Arm:
     """Connect to an arm.
 
@@ -260,6 +270,11 @@ def connect(
         Instead of loading the robot of the url: needed for other limits, and for `joint_robot`.
     cycle : float
         The loop's cycle [s].
+    tool_speed : float, optional
+        The guard's limit of the tool point's speed [m/s], e.g. 0.25 in reduced mode. A run or jog
+        that goes beyond it is stopped on its path, and the arm has to be connected anew.
+    workspace : (array_like (3,), array_like (3,)), optional
+        The guard's box: least and greatest x, y, z of the tool point [m].
 
     Returns
     -------
@@ -269,7 +284,8 @@ def connect(
     Raises
     ------
     BadArgumentError
-        Not such a url, a start that does not fit, a cycle that is not 0.1 ms to 1 s.
+        Not such a url, a start that does not fit, a cycle that is not 0.1 ms to 1 s, limits of the
+        tool for a robot without kinematics, a workspace whose ends are not in order.
     JointLimitError, CouplingLimitError
         A start outside the robot's limits.
     BadRobotError
@@ -293,9 +309,38 @@ def connect(
     elif parts.query:
         joints = _start_of(parts.query, arm_robot.joints)
     require_within_limits(arm_robot, joints, "start", ["Say where the arm stands: start=[…]."])
+    speed, low, high = _guarded(arm_robot, tool_speed, workspace)
     if _session.current().virtual:
         return Arm(arm_robot, VirtualLoop(arm_robot, joints, period), period)
-    return Arm(arm_robot, _core.ControllerLoop(arm_robot._core, joints, cycle=period), period)
+    loop = _core.ControllerLoop(
+        arm_robot._core, joints, cycle=period, tool_speed=speed, box_min=low, box_max=high
+    )
+    return Arm(arm_robot, loop, period)
+
+
+def _guarded(
+    robot: Robot, tool_speed: float | None, workspace: tuple[ArrayLike, ArrayLike] | None
+) -> tuple[float, Vector, Vector]:
+    """Return the guard's speed and box of the tool; infinite where there are none."""
+    if not robot.has_kinematics and not (tool_speed is None and workspace is None):
+        raise BadArgumentError(
+            f'The robot "{robot.name}" has no kinematics: its tool has no speed and no workspace.'
+        )
+    low, high = np.full(3, -np.inf), np.full(3, np.inf)
+    if workspace is not None:
+        try:
+            least, most = workspace
+        except (TypeError, ValueError):
+            raise BadArgumentError(
+                f"workspace is {workspace!r}; it must be (least, greatest) x, y, z."
+            ) from None
+        low, high = vector(least, "workspace[0]", 3), vector(most, "workspace[1]", 3)
+        if not (low < high).all():
+            raise BadArgumentError(
+                f"The workspace goes from {low} to {high} m; each end must be beyond its beginning."
+            )
+    speed = math.inf if tool_speed is None else number(tool_speed, "tool_speed", "m/s", least=0.0)
+    return speed, low, high
 
 
 def _start_of(query: str, joints: int) -> Vector:

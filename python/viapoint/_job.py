@@ -10,6 +10,7 @@ from . import _core, _session
 from ._arguments import number
 from ._motion import CYCLE, Motion
 from ._run_log import RunLog
+from .errors import BadArgumentError, DriveFaultError
 
 ENDED = ("finished", "stopped", "fault")
 _SLICE = 0.05
@@ -22,7 +23,9 @@ class Execution(Protocol):
     def wait(self, timeout: float) -> bool: ...
     def pause(self) -> None: ...
     def resume(self) -> None: ...
-    def stop(self) -> None: ...
+    def step(self) -> None: ...
+    def backward(self) -> None: ...
+    def stop(self, category: int) -> None: ...
     @property
     def state(self) -> str: ...
     @property
@@ -94,7 +97,7 @@ class Job:
 
     @property
     def state(self) -> str:
-        """``"running"``, ``"pausing"``, ``"paused"``, ``"stopping"``, ``"stopped"``, …."""
+        """``"running"``, ``"paused"``, ``"jogging"``, …: one of ``RunLog.STATES``."""
         return self._execution.state
 
     @property
@@ -160,6 +163,9 @@ class Job:
                 left -= part
                 if left <= 0.0:
                     return False
+        except DriveFaultError:
+            self._seen_to_end = True
+            raise
         except BaseException:
             self._come_to_rest()
             raise
@@ -169,12 +175,49 @@ class Job:
         self._execution.pause()
 
     def resume(self) -> None:
-        """Go on after `pause`."""
+        """Go on after `pause`, `step` or `backward`.
+
+        Where the arm was jogged away meanwhile it first returns to where it left the path, in a
+        straight line in joint space (``"returning"``).
+        """
         self._execution.resume()
 
-    def stop(self) -> None:
-        """Come to rest on the path; the job then ends as ``"stopped"``. Returns at once."""
-        self._execution.stop()
+    def step(self) -> None:
+        """Run to the end of the move under way, then pause. Returns at once.
+
+        A move that ends at rest ends the step exactly there; after one that is rounded into the
+        next, the arm comes to rest as soon as it can.
+        """
+        self._execution.step()
+
+    def backward(self) -> None:
+        """Go back along the path, to its start at most, until told otherwise. Returns at once.
+
+        The override holds backward, too. Outputs stay as they are, and on the way forward until
+        the arm is past where it turned. At the start it is ``"paused"``.
+        """
+        self._execution.backward()
+
+    def stop(self, category: int = 2) -> None:
+        """Come to rest on the path; the job then ends as ``"stopped"``. Returns at once.
+
+        Parameters
+        ----------
+        category : int
+            2: the arm then holds its position, and the next program may start there. 1: the drive
+            is released; connect again to go on.
+
+        Raises
+        ------
+        BadArgumentError
+            Another category. 0 is the drive's own: its power goes at once.
+        """
+        if category not in (1, 2) or isinstance(category, bool):
+            raise BadArgumentError(
+                f"The stop's category is {category!r}; it must be 1 or 2.",
+                ways_out=["Category 0 is the drive's own emergency stop."],
+            )
+        self._execution.stop(category)
 
     @property
     def log(self) -> RunLog:
@@ -200,6 +243,6 @@ class Job:
 
     def _come_to_rest(self) -> None:
         """Stop and wait; a fault meanwhile is the drive's, which is then at rest, too."""
-        self._execution.stop()
+        self._execution.stop(2)
         while not self.ended:
             self._execution.wait(_SLICE)

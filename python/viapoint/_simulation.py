@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from . import _core
-from ._arguments import ArrayLike, choice, number, vector
+from ._arguments import ArrayLike, Vector, choice, number, vector
 from ._motion import CYCLE, Motion
 from ._program import Program, motion_of
 from ._robot import Robot
@@ -13,7 +15,8 @@ from ._run_log import RunLog
 from ._samples import Samples
 from .errors import BadArgumentError
 
-Command = tuple[float, str] | tuple[float, str, float]
+COMMANDS = ("override", "pause", "resume", "step", "backward", "jog", "stop")
+Command = tuple[float, str] | tuple[float, str, float] | tuple[float, str, ArrayLike]
 
 
 def simulate(
@@ -28,9 +31,11 @@ def simulate(
     ----------
     program : Program or Motion
         What to run.
-    commands : sequence of (float, str) or (float, str, float)
+    commands : sequence of (float, str) or (float, str, value)
         Time from the start of the run [s] and ``"override"`` with its share in [0, 1],
-        ``"pause"``, ``"resume"`` or ``"stop"``. Those after the end are ignored.
+        ``"pause"``, ``"resume"``, ``"step"``, ``"backward"`` or ``"stop"``; or, in a pause,
+        ``"jog"`` with the joint velocities (n,) [rad/s or m/s], which count for 250 ms. Those after
+        the end are ignored.
     cycle : float
         The controller's cycle [s].
 
@@ -48,7 +53,10 @@ def simulate(
     """
     motion = motion_of(program)
     period = number(cycle, "cycle", "s", least=1e-4, most=1.0)
-    timed = [_command(command, f"commands[{i}]") for i, command in enumerate(commands)]
+    timed = [
+        _command(command, f"commands[{i}]", motion.robot.joints)
+        for i, command in enumerate(commands)
+    ]
     return RunLog.of(_core.simulate(motion._core, timed, period), motion, period).samples
 
 
@@ -111,7 +119,7 @@ def simulate_jog(
     return RunLog(**log.columns(), period=period, robot=robot, core=log, tools=()).samples
 
 
-def _command(command: Command, name: str) -> tuple[float, str, float]:
+def _command(command: Command, name: str, joints: int) -> tuple[float, str, Vector]:
     try:
         time, kind, *rest = command
     except (TypeError, ValueError):
@@ -119,10 +127,13 @@ def _command(command: Command, name: str) -> tuple[float, str, float]:
             f'{name} is {command!r}; it must be (seconds, "pause") or the like.'
         ) from None
     seconds = number(time, f"{name}[0]", "s", least=0.0)
-    word = choice(kind, f"{name}[1]", ("override", "pause", "resume", "stop"))
-    if (word == "override") != (len(rest) == 1):
+    word = choice(kind, f"{name}[1]", COMMANDS)
+    if (word in ("override", "jog")) != (len(rest) == 1):
         raise BadArgumentError(
-            f'{name} is {command!r}; "override" has a share after it, the others nothing.'
+            f'{name} is {command!r}; "override" has a share after it, "jog" the joint velocities, '
+            "the others nothing."
         )
-    share = number(rest[0], f"{name}[2]", least=0.0, most=1.0) if rest else 0.0
-    return seconds, word, share
+    if word == "jog":
+        return seconds, word, vector(rest[0], f"{name}[2]", joints)
+    share = [number(rest[0], f"{name}[2]", least=0.0, most=1.0)] if rest else []
+    return seconds, word, np.array(share)

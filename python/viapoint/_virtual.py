@@ -18,6 +18,7 @@ _HOLD = 0.05
 """A call to jog, and a look at one, let so much time pass [s]: buttons are repeated that often."""
 _LOOKS = 20
 """A motion is over after so many looks at it, so that a script which polls gets on."""
+_NOTHING = np.zeros(0)
 
 
 class VirtualExecution:
@@ -31,7 +32,8 @@ class VirtualExecution:
         self._motion = motion
         self._cycle = cycle
         self._step = math.ceil(motion.duration / cycle / _LOOKS)
-        self._commands: list[tuple[float, str, float]] = [(0.0, "override", override)]
+        self._commands = [(0.0, "override", np.array([override]))]
+        self.released = False
         self._now = 0
         self.duration = motion.duration
         self.overruns = 0
@@ -42,11 +44,22 @@ class VirtualExecution:
         self._log = _core.simulate(self._motion, self._commands, self._cycle)
         self._columns = self._log.columns()
 
-    def command(self, kind: str, share: float = 0.0) -> None:
+    def command(self, kind: str, values: Vector = _NOTHING) -> None:
         """Have a command take effect in the next cycle."""
         if self._state() not in ENDED:
-            self._commands.append(((self._now + 1) * self._cycle, kind, share))
+            self._commands.append(((self._now + 1) * self._cycle, kind, values))
             self._simulate()
+
+    @property
+    def may_be_jogged(self) -> bool:
+        """True where it rests after `pause`, or is being jogged there."""
+        wishes = [kind for _, kind, _ in self._commands if kind not in ("override", "jog")]
+        return wishes[-1:] == ["pause"] and self._state() in ("paused", "jogging")
+
+    @property
+    def jogging(self) -> bool:
+        """True until a jog has come to rest."""
+        return self._state() == "jogging"
 
     def pass_cycles(self, count: int) -> None:
         """Let time pass, at most until the run ends or rests."""
@@ -99,8 +112,17 @@ class VirtualExecution:
         """Go on."""
         self.command("resume")
 
-    def stop(self) -> None:
+    def step(self) -> None:
+        """Run to the end of the move, then pause."""
+        self.command("step")
+
+    def backward(self) -> None:
+        """Go back along the path."""
+        self.command("backward")
+
+    def stop(self, category: int) -> None:
         """Come to rest on the path and end."""
+        self.released = self.released or (category == 1 and self._state() not in ENDED)
         self.command("stop")
 
     def log(self) -> _core.Log:
@@ -144,6 +166,19 @@ class VirtualLoop:
                 ways_out=["Connect again: viapoint.connect(...)."],
             )
 
+    def _require_power(self) -> None:
+        self._require_open()
+        if self._run is not None and self._run.released:
+            raise DriveFaultError(
+                "The drive was released by a stop of category 1.", ways_out=["Connect again."]
+            )
+
+    @property
+    def fault(self) -> str:
+        """Nothing: there is no drive to fail."""
+        self._require_open()
+        return ""
+
     @property
     def override(self) -> float:
         """Share of the planned speed."""
@@ -155,7 +190,7 @@ class VirtualLoop:
         self._require_open()
         self._override = share
         if self._run is not None:
-            self._run.command("override", share)
+            self._run.command("override", np.array([share]))
 
     @property
     def position(self) -> Vector:
@@ -202,6 +237,7 @@ class VirtualLoop:
                 raise BusyError(
                     "A run is already under way.", ways_out=["Resume or stop it, and wait for it."]
                 )
+            self._require_power()
             self._end_run()
         if self._jog.jogging:
             raise BusyError(
@@ -217,16 +253,25 @@ class VirtualLoop:
         Raises
         ------
         BusyError
-            A run is under way.
+            A run is under way, and does not rest in a pause.
         DriveFaultError
-            The arm is closed.
+            The arm is closed, or released.
         VelocityLimitError
             A joint is asked for more than its velocity limit.
         """
+        self._require_power()
+        if self._run is not None and self._run.may_be_jogged:
+            self._run.command("jog", velocity)
+            self._run.pass_cycles(self._hold)
+            return
         if self.busy:
             raise BusyError(
-                "A run is under way, and the arm jogs only between runs.",
-                ways_out=["Wait for its end.", "Stop it first."],
+                "A run is under way, and the arm jogs only between runs and in a pause.",
+                ways_out=[
+                    "Wait for its end.",
+                    "Pause it and wait until it rests.",
+                    "Stop it first.",
+                ],
             )
         self._end_run()
         self._jog.jog(velocity)
@@ -242,6 +287,9 @@ class VirtualLoop:
     def jogging(self) -> bool:
         """True until a jog has come to rest, after a while has passed."""
         self._require_open()
+        if self._run is not None:
+            self._run.pass_cycles(self._hold)
+            return self._run.jogging
         self._jog.pass_cycles(self._hold)
         return self._jog.jogging
 
@@ -255,6 +303,6 @@ class VirtualLoop:
     def close(self) -> None:
         """Disconnect; a run under way is brought to rest on its path first."""
         if self._run is not None:
-            self._run.stop()
+            self._run.stop(2)
             self._run.to_end()
         self.is_open = False

@@ -41,8 +41,9 @@ void check_time(const char* what, double time) {
                                                  " s; it must be finite and not negative");
 }
 
-void check(const TimedCommand& command) {
+void check(const TimedCommand& command, const JointLimits& limits) {
   check_time("a command's", command.time);
+  if (command.kind == TimedCommand::Kind::kJog) admit_jog(command.velocity, limits);
   if (command.kind == TimedCommand::Kind::kOverride &&
       !(command.value >= 0.0 && command.value <= 1.0)) {
     throw MotionError(ErrorCode::kBadArgument, "an override of " + number_text(command.value) +
@@ -70,6 +71,9 @@ void apply(const TimedCommand& command, Interpolator& interpolator) {
     case TimedCommand::Kind::kBackward:
       interpolator.wish(Wish::kBackward);
       break;
+    case TimedCommand::Kind::kJog:
+      interpolator.jog(command.velocity);
+      break;
   }
 }
 
@@ -83,7 +87,7 @@ std::vector<LogRecord> simulate(const Trajectory& trajectory, const JointLimits&
     throw MotionError(ErrorCode::kEmptyProgram, "the motion is empty: there is nothing to run");
   }
   admit(trajectory, limits, trajectory.at(0.0).q);
-  std::ranges::for_each(commands, check);
+  for (const TimedCommand& command : commands) check(command, limits);
   std::ranges::stable_sort(commands, {}, &TimedCommand::time);
 
   Interpolator interpolator(limits, cycle, trajectory.at(0.0).q);

@@ -137,10 +137,11 @@ void admit(const Trajectory& trajectory, const JointLimits& limits, const JointV
 
 /// A command of a simulated run.
 struct TimedCommand {
-  enum class Kind { kOverride, kPause, kResume, kStop, kStep, kBackward };
+  enum class Kind { kOverride, kPause, kResume, kStop, kStep, kBackward, kJog };
   double time = 0.0;  ///< [s] from the start of the run
   Kind kind = Kind::kOverride;
-  double value = 0.0;
+  double value = 0.0;      ///< of kOverride
+  JointVector velocity{};  ///< of kJog, as ControllerLoop::jog; it counts for 250 ms and in a pause
 };
 
 /// The same Interpolator in virtual time, without thread or drive: one record a cycle, until the
