@@ -143,6 +143,7 @@ class Kinematics:
     ) -> Vector:
         """Every distinct solution within the limits, whole turns included, and no other.
 
+        Of a branch with more than 4096 turns within very wide limits, the 4096 about `near`.
         Arms with seven joints: all with this `redundancy`, or, without one, one solution for each
         configuration, the one that keeps farthest from its limits.
 
