@@ -1,7 +1,8 @@
 """Measure viapoint on this machine and print tables.
 
 Subjects: ``tick`` (one cycle of the interpolator), ``plan`` (planning a move), ``certificate``
-(proving a motion), ``walk`` (timing of long paths), ``insertion`` (tool curves as joints, every
+(proving a motion), ``walk`` (timing of long paths), ``growth`` (time and memory a move, from ten
+moves to a hundred thousand), ``insertion`` (tool curves as joints, every
 proof checked), ``kinematics`` (inverse kinematics), ``tracking`` (tool lines followed pose by
 pose), all in C++ by viapoint-bench; ``sample`` (states of a motion into numpy arrays) and
 ``programs`` (random programs planned and proven) in Python;

@@ -13,6 +13,7 @@ PYBIND11_MODULE(_core, m) {
   bind_program(m);
   bind_planning(m);
   bind_motion_file(m);
+  bind_stream(m);
   bind_realtime(m);
   bind_profile(m);
   auto profile = m.attr("profile").cast<pybind11::module_>();

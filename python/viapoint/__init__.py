@@ -17,6 +17,7 @@ SI units and radians everywhere; poses are ``pose_base_tool``, (4, 4). Every err
 
 from . import errors, frames, profile
 from ._arm import Arm, connect
+from ._chunks import Chunk
 from ._core import (
     Certificate,
     Configuration,
@@ -47,6 +48,7 @@ from .errors import MotionError
 __all__ = [
     "Arm",
     "Certificate",
+    "Chunk",
     "Configuration",
     "Corner",
     "CurveFit",

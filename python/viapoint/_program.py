@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Literal
 
 from . import _core, _session
 from ._arguments import ArrayLike, choice, integer, number
+from ._chunks import Chunk, chunks_of
 from ._curve_steps import CurveSteps
 from ._motion import Motion
 from ._report import Report
@@ -338,6 +339,31 @@ class Program(CurveSteps):
         motion = Motion(core, self, Report(core.problems))
         _session.current().planned(motion)
         return motion
+
+    def chunks(self, moves: Iterable[object] = ()) -> Iterator[Chunk]:
+        """Plan in chunks, while the program is told: the first is there after a few moves.
+
+        The path is that of `plan`; its timing is made in windows. Every chunk ends at rest on the
+        path, so that the arm may always stop where nothing more comes.
+
+        Parameters
+        ----------
+        moves : iterable
+            Adds steps to this program each time that it is asked for its next item, whatever that
+            is: ``program.chunks(program.movej(q) for q in points)``. Such steps are planned and
+            then dropped, so that memory does not grow with their number.
+
+        Yields
+        ------
+        Chunk
+            With the time at which the chunk before is left for it.
+
+        Raises
+        ------
+        MotionError
+            The first error, where it is met; all chunks before it are good.
+        """
+        return chunks_of(self, moves)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the program as JSON, for `load` and for ``viapoint-controller``.

@@ -6,13 +6,14 @@ from pathlib import Path
 
 from benches.tables import Row
 
-SUBJECTS = ("tick", "plan", "certificate", "walk", "insertion", "kinematics", "tracking")
+SUBJECTS = ("tick", "plan", "certificate", "walk", "growth", "insertion", "kinematics", "tracking")
 # What a quick look measures: enough to see the order of magnitude.
 QUICK = {
     "tick": 100_000,
     "plan": 10,
     "certificate": 10,
     "walk": 3,
+    "growth": 1000,
     "insertion": 20,
     "kinematics": 10_000,
     "tracking": 30,

@@ -16,6 +16,7 @@ __all__: list[str] = [
     "ANGLE_TOLERANCE",
     "CYCLE",
     "Certificate",
+    "Chunk",
     "Configuration",
     "ControllerLoop",
     "Corner",
@@ -39,6 +40,7 @@ __all__: list[str] = [
     "RobotModel",
     "RunReport",
     "Singularity",
+    "Stream",
     "Target",
     "TcpCalibration",
     "ToolCalibration",
@@ -1089,6 +1091,43 @@ class WantedLeg:
     def tool(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         In the frame of the last joint, (4, 4).
+        """
+
+class Chunk:
+    """
+    A motion to rest, and when the one before is left for it.
+    """
+    @property
+    def begin(self) -> float:
+        """
+        [s] of the chunk before
+        """
+    @property
+    def last(self) -> bool: ...
+    @property
+    def motion(self) -> PlannedMotion: ...
+
+class Stream:
+    """
+    Plans a program while it is told.
+    """
+    def __init__(self, robot: RobotModel, program: MotionProgram) -> None: ...
+    def end(self) -> None:
+        """
+        No step follows.
+        """
+    def next(self, not_before: typing.SupportsFloat | typing.SupportsIndex = 0.0) -> Chunk | None:
+        """
+        The next chunk, if it can be made already.
+        """
+    def take(self, program: MotionProgram, kept: typing.SupportsInt | typing.SupportsIndex) -> None:
+        """
+        Take the steps of a program from the number kept on, and drop them there.
+        """
+    @property
+    def stops(self) -> int:
+        """
+        Rests where a longer view would have gone on.
         """
 
 class Log:
