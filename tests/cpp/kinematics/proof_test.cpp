@@ -74,6 +74,98 @@ TEST(ClosedForms, SolveNearEachSingularityTo1e7) {
   }
 }
 
+TEST(ClosedForms, SolveEveryPoseOfTheRightAngleGrid) {
+  for (const char* name : {"puma560", "ur5e", "scara", "rpp", "two_link", "panda", "iiwa14"}) {
+    const RobotPtr robot = arm(name);
+    const JointLimits& limits = robot->limits();
+    std::mt19937_64 generator(94);
+    int solved = 0;
+    for (int problem = 0; problem < 2000; ++problem) {
+      SCOPED_TRACE(testing::Message() << name << " seed 94 problem " << problem);
+      JointVector q = random_joints(*robot, generator);
+      for (int i = 0; i < q.size(); ++i) {
+        if (robot->forward().type(i) == JointType::kPrismatic) continue;
+        q[i] = std::round(q[i] / (kPi / 2.0)) * (kPi / 2.0);
+      }
+      if (!limits.contains(q)) continue;
+      const Pose pose = robot->forward().pose(q);
+      JointVector found;
+      ASSERT_NO_THROW(found = robot->inverse().solve_near(pose, q)) << q.transpose();
+      ASSERT_TRUE(gives(*robot, found, pose, 1e-7));
+      ++solved;
+    }
+    EXPECT_GT(solved, 100) << name;
+  }
+}
+
+TEST(ClosedForms, SolveWhereTheWristIsOnTheShoulderAxis) {
+  // Joint 2 is turned until the wrist changes from before axis 1 to behind it, to the last bit, and
+  // on by as much as 1e-12 … 1e-3.
+  for (const char* name : {"puma560", "ur5e"}) {
+    const RobotPtr robot = arm(name);
+    const InverseKinematics& inverse = robot->inverse();
+    std::mt19937_64 generator(95);
+    int solved = 0;
+    for (int problem = 0; problem < 2000; ++problem) {
+      SCOPED_TRACE(testing::Message() << name << " seed 95 problem " << problem);
+      JointVector q = random_joints(*robot, generator);
+      const auto side = [&](double turn) {
+        JointVector turned = q;
+        turned[1] = turn;
+        return inverse.configuration(turned).shoulder;
+      };
+      const double low = robot->limits().position_min[1];
+      const double high = robot->limits().position_max[1];
+      constexpr int kSteps = 16;
+      double from = low;
+      double to = low;
+      const int before = side(from);
+      for (int step = 1; step <= kSteps && side(to) == before; ++step) {
+        from = to;
+        to = low + (high - low) * step / kSteps;
+      }
+      if (before == 0 || side(to) == before) continue;
+      for (int halving = 0; halving < 60; ++halving) {
+        const double middle = 0.5 * (from + to);
+        (side(middle) == before ? from : to) = middle;
+      }
+      q[1] = from + (problem % 11 == 0 ? 0.0 : std::pow(10.0, -13.0 + problem % 11));
+      if (!robot->limits().contains(q)) continue;
+      const Pose pose = robot->forward().pose(q);
+      JointVector found;
+      ASSERT_NO_THROW(found = inverse.solve_near(pose, q)) << q.transpose();
+      ASSERT_TRUE(gives(*robot, found, pose, 1e-7));
+      ++solved;
+    }
+    EXPECT_GT(solved, 500) << name;
+  }
+}
+
+TEST(ClosedForms, RefuseTheTwoLinksOutOfReachByTheirDistance) {
+  for (const char* name : {"scara", "two_link"}) {
+    const RobotPtr robot = arm(name);
+    std::mt19937_64 generator(96);
+    for (int problem = 0; problem < 2000; ++problem) {
+      SCOPED_TRACE(testing::Message() << name << " seed 96 problem " << problem);
+      JointVector q = random_joints(*robot, generator);
+      q[1] = 0.0;  // stretched
+      const ChainFrames frames = robot->forward().frames(q);
+      Eigen::Vector3d along = frames.pose_base_tool.translation() - frames.origin[0];
+      along -= frames.axis[0].dot(along) * frames.axis[0];
+      const double beyond = std::pow(10.0, -6.0 + problem % 7);
+      Pose pose = frames.pose_base_tool;
+      pose.translation() += beyond * along.normalized();
+      try {
+        (void)robot->inverse().solve_near(pose, q);
+        FAIL() << "solved";
+      } catch (const MotionError& error) {
+        ASSERT_EQ(error.code(), ErrorCode::kUnreachable) << error.what();
+        ASSERT_NEAR(*error.problem().value, beyond, 1e-8);
+      }
+    }
+  }
+}
+
 TEST(ClosedForms, RefuseWhatIsOutOfReachByItsDistance) {
   // The stretched arm, its wrist pushed on by 1 µm to 1 m along the line from shoulder to wrist.
   for (const char* name : {"puma560", "ur5e"}) {
