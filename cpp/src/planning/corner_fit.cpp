@@ -11,11 +11,13 @@ namespace {
 
 constexpr int kShrinks = 6;
 
-/// In a corner the limits of both legs count.
+/// In a corner the limits of both legs count; the lower speed is held if it is one to be held.
 ToolLimits both(const ToolLimits& a, const ToolLimits& b) {
+  const double speed = std::min(a.speed, b.speed);
+  const bool held = (a.hold_speed && a.speed == speed) || (b.hold_speed && b.speed == speed);
   return {std::min(a.speed, b.speed), std::min(a.acceleration, b.acceleration),
           std::min(a.angular_speed, b.angular_speed),
-          std::min(a.angular_acceleration, b.angular_acceleration)};
+          std::min(a.angular_acceleration, b.angular_acceleration), held};
 }
 
 /// True when the blend keeps position and coupled limits all the way. Legs inside the limits do

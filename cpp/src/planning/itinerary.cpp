@@ -238,6 +238,7 @@ class ItineraryWalk::Walk {
     };
     within(options.speed, "speed", kMostWish);
     within(options.acceleration, "acceleration", kMostWish);
+    within(options.process_speed, "process_speed", kMostWish);
     within(options.angular_speed, "angular_speed", kMostWish);
     within(options.angular_acceleration, "angular_acceleration", kMostWish);
     within(options.scale, "scale", 1.0);

@@ -21,7 +21,8 @@ struct Leg {
   [[nodiscard]] ToolLimits tool_limits() const {
     ToolLimits limits;
     if (!cartesian) return limits;
-    limits.speed = options.speed.value_or(ToolLimits::kNone);
+    limits.speed = options.process_speed.value_or(options.speed.value_or(ToolLimits::kNone));
+    limits.hold_speed = options.process_speed.has_value();
     limits.acceleration = options.acceleration.value_or(ToolLimits::kNone);
     limits.angular_speed = options.angular_speed.value_or(ToolLimits::kNone);
     limits.angular_acceleration = options.angular_acceleration.value_or(ToolLimits::kNone);

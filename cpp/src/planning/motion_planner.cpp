@@ -103,7 +103,7 @@ class Composer {
     if (legs_.empty()) return;
     for (const Section& section : sections()) {
       if (!section.tool.empty()) {
-        tool_.add(arm_->forward(), section.pieces, section.tool, time_so_far());
+        tool_.add(*arm_, section.pieces, section.tool, time_so_far());
       }
       pieces_.insert(pieces_.end(), section.pieces.begin(), section.pieces.end());
       motion_.corners.insert(motion_.corners.end(), section.corners.begin(), section.corners.end());
@@ -141,6 +141,12 @@ class Composer {
       certificate.zone_deviation = std::max(certificate.zone_deviation, corner.cut);
     }
     motion_.tool_spans = tool_.take_spans();
+    motion_.process_stretches = tool_.take_stretches();
+    for (const ProcessStretch& stretch : motion_.process_stretches) {
+      Problem problem = planning::warning_of(stretch);
+      planning::locate(problem, program_, stretch.move);
+      motion_.report.problems.push_back(std::move(problem));
+    }
     for (Problem& problem : planning::problems_of(certificate.tool)) {
       certificate.problems.push_back(std::move(problem));
     }

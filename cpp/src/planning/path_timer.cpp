@@ -151,7 +151,7 @@ bool PathTimer::holds(std::span<const TrajectoryPiece> pieces, std::size_t numbe
   const ToolLimits& limits = piece(number).tool;
   if (!limits.any()) return true;
   ToolProof proof;
-  proof.add(robot_.forward(), pieces, std::vector<ToolLimits>(pieces.size(), limits), 0.0);
+  proof.add(robot_, pieces, std::vector<ToolLimits>(pieces.size(), limits), 0.0);
   return problems_of(proof.extrema()).empty();
 }
 

@@ -231,7 +231,7 @@ class StreamPlanner::Line {
     Certificate& certificate = chunk.motion.certificate();
     certificate.manipulability = manipulability;
     planning::ToolProof proof;
-    if (!tool.empty()) proof.add(arm.forward(), chunk.motion.pieces(), tool, 0.0);
+    if (!tool.empty()) proof.add(arm, chunk.motion.pieces(), tool, 0.0);
     certificate.tool = proof.extrema();
     for (Problem& problem : planning::problems_of(certificate.tool)) {
       certificate.problems.push_back(std::move(problem));

@@ -23,7 +23,7 @@ JointPiece geometry_of(const TrajectoryPiece& piece) {
 
 }  // namespace
 
-void ToolProof::add(const ForwardKinematics& arm, std::span<const TrajectoryPiece> pieces,
+void ToolProof::add(const RobotModel& robot, std::span<const TrajectoryPiece> pieces,
                     std::span<const ToolLimits> limits, double time) {
   if (limits.empty()) return;
   std::optional<ToolRates> rates;
@@ -32,10 +32,11 @@ void ToolProof::add(const ForwardKinematics& arm, std::span<const TrajectoryPiec
     const double end = time + piece.duration;
     if (limits[k].any()) {
       if (k == 0 || !rates || piece.path != pieces[k - 1].path) {
-        rates = tool_rates(arm, geometry_of(piece));
+        rates = tool_rates(robot.forward(), geometry_of(piece));
       }
       rates->limits = limits[k];
       certifier_.add(piece, *rates, time);
+      if (limits[k].hold_speed) process_.add(robot.limits(), piece, *rates, time);
       if (!spans_.empty() && spans_.back().move == piece.move && spans_.back().to == time &&
           spans_.back().limits == limits[k]) {
         spans_.back().to = end;

@@ -4,9 +4,11 @@
 
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
-#include "viapoint/kinematics/forward_kinematics.hpp"
+#include "planning/process_proof.hpp"
+#include "viapoint/kinematics/robot_model.hpp"
 #include "viapoint/planning/motion_planner.hpp"
 #include "viapoint/trajectory/tool_certificate.hpp"
 #include "viapoint/trajectory/trajectory_piece.hpp"
@@ -17,14 +19,18 @@ class ToolProof {
  public:
   /// @param limits one a piece, or none where the tool is not limited
   /// @param time where the first piece begins [s]
-  void add(const ForwardKinematics& arm, std::span<const TrajectoryPiece> pieces,
+  void add(const RobotModel& robot, std::span<const TrajectoryPiece> pieces,
            std::span<const ToolLimits> limits, double time);
   [[nodiscard]] const ToolExtrema& extrema() const { return certifier_.extrema(); }
   /// Which limits hold when.
   [[nodiscard]] std::vector<ToolSpan> take_spans() { return std::move(spans_); }
 
+  /// Where process speeds are not held.
+  [[nodiscard]] std::vector<ProcessStretch> take_stretches() { return process_.take(); }
+
  private:
   ToolCertifier certifier_;
+  ProcessProof process_;
   std::vector<ToolSpan> spans_;
 };
 

@@ -8,7 +8,8 @@ namespace viapoint::path_timing {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-constexpr Four kInnerAtStart{1.0, 1.0 / 3.0, 0.0, 0.0}, kInnerAtEnd{0.0, 0.0, 1.0, -1.0 / 3.0};
+/// Inner Bernstein coefficients of b by the cell's four numbers.
+constexpr std::array<Four, 2> kInner{{{1.0, 1.0 / 3.0, 0.0, 0.0}, {0.0, 0.0, 1.0, -1.0 / 3.0}}};
 /// The barriers of a cell share what is given to one of its places.
 constexpr double kPlaces = 3.0;
 
@@ -54,9 +55,9 @@ double BarrierProblem::assemble_cell(size_t k, const SquareRate& rate, double we
   const double w = weight * time / kPlaces, c = curvature * time / kPlaces;
   // The inner Bernstein coefficients of b stay positive, relative to b at the nodes, and below the
   // ceiling.
-  const double most = cell.most();
-  for (const Four& v : {kInnerAtStart, kInnerAtEnd}) {
-    const double inner = dot(v, x), below = 1.0 / inner, above = 1.0 / (most - inner);
+  for (size_t i = 0; i < kInner.size(); ++i) {
+    const Four& v = kInner[i];
+    const double inner = dot(v, x), below = 1.0 / inner, above = 1.0 / (cell.most(i) - inner);
     terms.add(v, w * (ceiling_weight_ * above - below),
               c * (ceiling_weight_ * above * above + below * below));
   }
@@ -234,16 +235,15 @@ double BarrierProblem::largest_step(const SquareRate& rate, const SquareRate& st
     const CellRows& cell = cells_[k + 1];
     const Four x = cell.numbers(rate[k], rate[k + 1]);
     const Four dx = cell.numbers(step[k], step[k + 1]);
-    const double most = cell.most();
     for (size_t r = cell.first_cone; r < cell.last_cone; ++r) {
       const CellCone& cone = cell_cones_[r];
       const double room = 1.0 / cell.factor.acceleration;
       consider_cone(cone.y, cone.n, cone.inverse, room * dot(cone.along, dx),
                     room * dot(cone.across, dx));
     }
-    for (const Four& v : {kInnerAtStart, kInnerAtEnd}) {
-      const double inner = dot(v, x), change = dot(v, dx);
-      worst = std::max({worst, change / (most - inner), -change / inner});
+    for (size_t i = 0; i < kInner.size(); ++i) {
+      const double inner = dot(kInner[i], x), change = dot(kInner[i], dx);
+      worst = std::max({worst, change / (cell.most(i) - inner), -change / inner});
     }
     if (cell.straight()) {
       const StraightUse& use = straight_use_[k + 1];

@@ -44,7 +44,14 @@ class BarrierProblem {
   [[nodiscard]] bool solve(SquareRate& rate, double weight, double last_weight);
 
   /// Motion along the cells, C² in time.
-  [[nodiscard]] std::vector<TimedSpan> spans(const SquareRate& rate) const;
+  [[nodiscard]] std::vector<TimedSpan> spans(const SquareRate& rate) const {
+    return spans(rate, held_cells(rate));
+  }
+  /// @param held cells in which the tool's speed is held exactly: a part of held_cells()
+  [[nodiscard]] std::vector<TimedSpan> spans(const SquareRate& rate,
+                                             const std::vector<bool>& held) const;
+  /// Cells so near the speed to be held that they are to be held exactly.
+  [[nodiscard]] std::vector<bool> held_cells(const SquareRate& rate) const;
   /// Shares that the model sees in each cell, at its places.
   [[nodiscard]] std::vector<Shares> shares(const SquareRate& rate) const;
   /// What the limits of each cell are multiplied by.
@@ -91,15 +98,18 @@ class BarrierProblem {
   };
   struct CellRows {
     double length = 0.0, gear = 1.0;
-    double ceiling = 0.0;  ///< of b inside, in its own scale
+    /// Of the inner Bernstein coefficients of b, which bound it between the nodes.
+    std::array<double, 2> ceiling{};
+    bool held = false;  ///< the tool's speed is to be kept there
     /// Rows of a straight cell, which has no others: of jerk by h² b'', of acceleration by h b'.
     double straight_jerk = 0.0, straight_acceleration = 0.0;
     size_t begin = 0, end = 0;  ///< rows of all places
     size_t first_cone = 0, last_cone = 0;
     Shares factor{1.0, 1.0, 1.0};  ///< on the limits
 
-    /// Of the inner Bernstein coefficients of b, which bound it between the nodes.
-    [[nodiscard]] double most() const { return ceiling * factor.velocity * factor.velocity; }
+    [[nodiscard]] double most(size_t inner) const {
+      return ceiling[inner] * factor.velocity * factor.velocity;
+    }
     [[nodiscard]] bool straight() const { return straight_jerk > 0.0; }
     [[nodiscard]] Four numbers(const NodeRate& from, const NodeRate& to) const {
       return {gear * gear * from.value, length * gear * from.slope, to.value, length * to.slope};
@@ -107,6 +117,11 @@ class BarrierProblem {
   };
 
   void add_cell(const Cell& cell, bool inner);
+  void set_inner_ceilings(size_t cell);
+  [[nodiscard]] bool about_held(size_t cell, const SquareRate& rate) const;
+  /// True where the cell can begin, or end, at exactly that speed with hardly any jerk more in its
+  /// neighbour.
+  [[nodiscard]] bool can_be_met(size_t cell, bool at_start, const SquareRate& rate) const;
   void add_node(const Cell& before, const Cell& after);
   void add_acceleration_rows(size_t stretch, double s, double gear);
   [[nodiscard]] double rate_ceiling(size_t stretch, double s) const;

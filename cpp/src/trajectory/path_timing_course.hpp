@@ -56,6 +56,11 @@ class Course {
     return std::any_of(stretches_.begin(), stretches_.end(),
                        [](const Stretch& stretch) { return stretch.tool != nullptr; });
   }
+  [[nodiscard]] bool holds_speed() const {
+    return std::any_of(stretches_.begin(), stretches_.end(), [](const Stretch& stretch) {
+      return stretch.tool != nullptr && stretch.tool->limits.hold_speed;
+    });
+  }
   /// One over the limits of a joint along a stretch.
   [[nodiscard]] Shares shares_per_rate(size_t stretch, int joint) const {
     const double per_scale = 1.0 / stretches_[stretch].geometry->scale;

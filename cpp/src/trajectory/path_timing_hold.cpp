@@ -38,25 +38,47 @@ NodeRate hold_rate(const Stretch& stretch, double sigma) {
   return {b, -2.0 * b * square.half_slope / square.value / l};
 }
 
-TimedSpan hold_span(size_t piece, const Stretch& stretch, double from, double to) {
+double hold_time(const Stretch& stretch, double from, double to) {
   double way = 0.0;
   for (const Quadrature& q : kGauss5) {
     const double u = (from + q.at * (to - from)) / stretch.length;
     way += q.weight * std::sqrt(square_at(stretch.tool->linear, u).value);
   }
   way *= (to - from) / stretch.length;
+  return way / (kHoldAim * stretch.tool->limits.speed);
+}
+
+TimedSpan hold_span(size_t piece, const Stretch& stretch, double from, double to) {
   const auto state = [&](double sigma) {
     const NodeRate rate = hold_rate(stretch, sigma);
     return RateState{sigma, std::sqrt(rate.value), 0.5 * rate.slope};
   };
   return TimedSpan::between(piece, stretch.length, state(from), state(to),
-                            way / (kHoldAim * stretch.tool->limits.speed));
+                            hold_time(stretch, from, to));
 }
 
 bool holds_speed(const Stretch& stretch, const TimedSpan& span) {
-  const SpeedRange range = tool_speed_range(span.u, span.duration, stretch.tool->linear);
   const double asked = stretch.tool->limits.speed;
+  const SpeedRange range = tool_speed_range(span.u, span.duration, stretch.tool->linear, asked);
   return range.least >= asked * (1.0 - kHeldWithin) && range.most <= asked;
+}
+
+Grid refine_to_hold(const Course& course, Grid grid) {
+  constexpr int kMostHalvings = 6;
+  for (int halving = 0; halving < kMostHalvings; ++halving) {
+    std::vector<bool> split;
+    for (const Cell& cell : grid.cells) {
+      const Stretch& stretch = course.stretches()[cell.piece];
+      split.push_back(is_held(stretch) &&
+                      !holds_speed(stretch, hold_span(cell.piece, stretch, cell.s0, cell.s1)));
+    }
+    split.front() = split.back() = false;
+    if (std::none_of(split.begin(), split.end(), [](bool s) { return s; })) break;
+    SquareRate rate;
+    for (const double value : grid.square_rate) rate.push_back({value, 0.0});
+    grid = refine(grid, split, rate);
+  }
+  return grid;
 }
 
 double largest_held_speed(const Course& course, const std::vector<TimedSpan>& spans) {
@@ -64,8 +86,9 @@ double largest_held_speed(const Course& course, const std::vector<TimedSpan>& sp
   for (const TimedSpan& span : spans) {
     const Stretch& stretch = course.stretches()[span.piece];
     if (!is_held(stretch)) continue;
-    const SpeedRange range = tool_speed_range(span.u, span.duration, stretch.tool->linear);
-    worst = std::max(worst, range.most / stretch.tool->limits.speed);
+    const double asked = stretch.tool->limits.speed;
+    const SpeedRange range = tool_speed_range(span.u, span.duration, stretch.tool->linear, asked);
+    worst = std::max(worst, range.most / asked);
   }
   return worst;
 }

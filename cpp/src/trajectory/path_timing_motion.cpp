@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "trajectory/path_timing_barrier.hpp"
+#include "trajectory/path_timing_hold.hpp"
 
 namespace viapoint::path_timing {
 
@@ -100,8 +101,10 @@ void BarrierProblem::make_feasible(SquareRate& rate, int rounds) const {
     std::vector<Shares> used = shares(rate);
     for (size_t k = 1; k + 1 < cells_.size(); ++k) {
       const Four x = cells_[k].numbers(rate[k - 1], rate[k]);
-      const double inner = std::max(x[0] + x[1] / 3.0, x[2] - x[3] / 3.0);
-      used[k].velocity = std::max(used[k].velocity, std::sqrt(inner / cells_[k].ceiling));
+      const auto& ceiling = cells_[k].ceiling;
+      const double inner =
+          std::max((x[0] + x[1] / 3.0) / ceiling[0], (x[2] - x[3] / 3.0) / ceiling[1]);
+      used[k].velocity = std::max(used[k].velocity, std::sqrt(std::max(0.0, inner)));
     }
     std::vector<double> excess(cells_.size());  // of ṡ in a cell
     for (size_t k = 0; k < cells_.size(); ++k) {
@@ -147,7 +150,64 @@ void BarrierProblem::make_feasible(SquareRate& rate, int rounds) const {
   }
 }
 
-std::vector<TimedSpan> BarrierProblem::spans(const SquareRate& rate) const {
+bool BarrierProblem::about_held(size_t k, const SquareRate& rate) const {
+  constexpr double kNear = 2e-5;
+  const CellRows& rows = cells_[k];
+  if (!rows.held) return false;
+  const Cell& cell = grid_.cells[k];
+  const Stretch& stretch = course_->stretches()[cell.piece];
+  const Four x = rows.numbers(rate[k - 1], rate[k]);
+  const auto near = [&](double value, double slope, double sigma) {
+    const NodeRate hold = hold_rate(stretch, sigma);
+    return std::abs(value - hold.value) <= kNear * hold.value &&
+           std::abs(slope - rows.length * hold.slope) <= kNear * hold.value;
+  };
+  return near(x[0], x[1], cell.s0) && near(x[2], x[3], cell.s1) &&
+         holds_speed(stretch, hold_span(cell.piece, stretch, cell.s0, cell.s1));
+}
+
+bool BarrierProblem::can_be_met(size_t k, bool at_start, const SquareRate& rate) const {
+  constexpr double kJerkShare = 0.02;
+  const CellRows& rows = cells_[k];
+  const Cell& cell = grid_.cells[k];
+  const Four x = rows.numbers(rate[k - 1], rate[k]);
+  const NodeRate hold = hold_rate(course_->stretches()[cell.piece], at_start ? cell.s0 : cell.s1);
+  const double value = at_start ? x[0] : x[2], slope = at_start ? x[1] : x[3];
+  double bend = 0.0;
+  for (size_t r = rows.begin; r < rows.end; ++r) {
+    bend = std::max(bend, jerk_rows_[r].bend.abs().maxCoeff());
+  }
+  // h² b'' of a cubic changes by 6 of b and 4 of h b' at an end at most.
+  const double change =
+      6.0 * std::abs(value - hold.value) + 4.0 * std::abs(slope - rows.length * hold.slope);
+  return change * std::sqrt(hold.value) * bend <= kJerkShare;
+}
+
+std::vector<bool> BarrierProblem::held_cells(const SquareRate& rate) const {
+  std::vector<bool> held(cells_.size(), false);
+  for (size_t k = 1; k + 1 < cells_.size(); ++k) held[k] = about_held(k, rate);
+  for (size_t k = 1; k + 1 < cells_.size(); ++k) {
+    if (held[k] && !held[k - 1] && !can_be_met(k, true, rate)) held[k] = false;
+  }
+  for (size_t k = cells_.size() - 1; k-- > 1;) {
+    if (held[k] && !held[k + 1] && !can_be_met(k, false, rate)) held[k] = false;
+  }
+  return held;
+}
+
+std::vector<TimedSpan> BarrierProblem::spans(const SquareRate& optimal,
+                                             const std::vector<bool>& held) const {
+  // What is as good as held is held exactly; a barrier alone never is.
+  SquareRate rate = optimal;
+  for (size_t k = 1; k + 1 < cells_.size(); ++k) {
+    if (!held[k]) continue;
+    const Cell& cell = grid_.cells[k];
+    const Stretch& stretch = course_->stretches()[cell.piece];
+    const NodeRate from = hold_rate(stretch, cell.s0);
+    const double gear = cells_[k].gear;
+    if (!held[k - 1]) rate[k - 1] = {from.value / (gear * gear), from.slope / gear};
+    rate[k] = hold_rate(stretch, cell.s1);
+  }
   std::vector<TimedSpan> spans;
   spans.reserve(cells_.size());
   for (size_t k = 0; k < cells_.size(); ++k) {
@@ -165,6 +225,8 @@ std::vector<TimedSpan> BarrierProblem::spans(const SquareRate& rate) const {
     double time = 0.0;
     if (k == 0 || k + 1 == cells_.size()) {
       time = 3.0 * rows.length / std::max(from.rate, to.rate);
+    } else if (held[k]) {
+      time = hold_time(course_->stretches()[cell.piece], cell.s0, cell.s1);
     } else {
       const Four x = rows.numbers(rate[k - 1], rate[k]);
       for (const Quadrature& q : kGauss5) time += q.weight / std::sqrt(dot(q.value, x));

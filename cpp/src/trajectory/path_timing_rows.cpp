@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "trajectory/path_timing_barrier.hpp"
+#include "trajectory/path_timing_hold.hpp"
 #include "trajectory/path_timing_tool.hpp"
 
 namespace viapoint::path_timing {
@@ -28,10 +29,7 @@ BarrierProblem::BarrierProblem(const Course& course, const Grid& grid)
   double least = std::min(start_ceiling_, end_ceiling_);
   for (const Node& node : nodes_) least = std::min(least, node.ceiling);
   for (Node& node : nodes_) node.ceiling = std::min(node.ceiling, 1e12 * least);
-  for (size_t k = 1; k + 1 < cells; ++k) {
-    const double gear = cells_[k].gear;
-    cells_[k].ceiling = std::max(gear * gear * nodes_[k - 1].ceiling, nodes_[k].ceiling);
-  }
+  for (size_t k = 1; k + 1 < cells; ++k) set_inner_ceilings(k);
   acceleration_use_.resize(acceleration_rows_.size());
   jerk_use_.resize(jerk_rows_.size());
   straight_use_.resize(cells_.size());
@@ -44,6 +42,7 @@ void BarrierProblem::add_cell(const Cell& cell, bool inner) {
   rows.length = cell.length();
   rows.gear = cell.gear;
   rows.begin = jerk_rows_.size();
+  rows.held = inner && is_held(stretch);
   const double h = rows.length;
   if (inner && stretch.straight) {
     rows.straight_jerk = 0.5 / (stretch.jerk_limit * h * h);
@@ -75,6 +74,26 @@ void BarrierProblem::add_cell(const Cell& cell, bool inner) {
   }
   rows.last_cone = cell_cones_.size();
   cells_.push_back(rows);
+}
+
+void BarrierProblem::set_inner_ceilings(size_t k) {
+  constexpr double kLeast = 0.1;
+  CellRows& rows = cells_[k];
+  const double start = rows.gear * rows.gear * nodes_[k - 1].ceiling, end = nodes_[k].ceiling;
+  rows.ceiling.fill(std::max(start, end));
+  if (!rows.held) return;
+  // b is to follow the ceiling of the tool's speed, so its cubic is held against that of C.
+  const Cell& cell = grid_.cells[k];
+  const Stretch& stretch = course_->stretches()[cell.piece];
+  const NodeRate from = hold_rate(stretch, cell.s0), to = hold_rate(stretch, cell.s1);
+  const std::array<double, 2> inner{from.value + rows.length * from.slope / 3.0,
+                                    to.value - rows.length * to.slope / 3.0};
+  for (size_t i = 0; i < inner.size(); ++i) {
+    if (!std::isfinite(inner[i])) continue;
+    const double least = kLeast * std::min(start, end);
+    rows.ceiling[i] =
+        std::clamp(inner[i] * (2.0 - kHoldAim), least, std::max(least, rows.ceiling[i]));
+  }
 }
 
 void BarrierProblem::add_node(const Cell& before, const Cell& after) {
@@ -130,6 +149,7 @@ double BarrierProblem::rate_ceiling(size_t stretch, double s) const {
     JointRates rates;
     course_->rates(stretch, s, rates);
     for (const double share : rates.velocity) v = std::max(v, std::abs(share));
+    if (is_held(here)) v *= kHeldRoom;
   }
   if (here.tool != nullptr) v = std::max(v, tool_at(here, s).velocity);
   return 1.0 / (v * v);

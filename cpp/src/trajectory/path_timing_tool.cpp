@@ -67,9 +67,12 @@ ToolPlace tool_at(const Stretch& stretch, double sigma) {
 }
 
 ToolBounds tool_bounds(const ToolRates& tool, const TimingSamples& samples) {
+  // A speed to be held is no limit to press against: it is looked at by itself.
+  const bool held = tool.limits.hold_speed;
   const double rate = samples.most_rate(), change = samples.most_change();
   ToolBounds bounds;
-  for (const Limited& here : limited(tool)) {
+  for (Limited here : limited(tool)) {
+    if (held && here.rate == &tool.linear) here.per_speed = 0.0;
     if (!here.counts()) continue;
     const ToolRate& w = *here.rate;
     const Rates reached = samples.reached(w.coefficients),

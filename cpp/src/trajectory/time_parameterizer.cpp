@@ -9,6 +9,7 @@
 
 #include "trajectory/path_timing_barrier.hpp"
 #include "trajectory/path_timing_grid.hpp"
+#include "trajectory/path_timing_hold.hpp"
 #include "trajectory/path_timing_range.hpp"
 #include "trajectory/path_timing_span.hpp"
 #include "trajectory/path_timing_uniform.hpp"
@@ -29,9 +30,10 @@ constexpr double kMargin = 1.0 + 1e-12;
 /// What the limits of each cell must be multiplied by for the motion, as proven, to use as much of
 /// them as the optimiser meant to.
 /// @param most share of its limits that the present motion may use in the optimiser's eyes
+/// @param aim share of the limits that the motion is to use
 std::vector<Shares> corrections(const BarrierProblem& problem, const SquareRate& rate,
                                 const Course& course, const std::vector<TimedSpan>& spans,
-                                double most) {
+                                double most, double aim) {
   constexpr int kCells = 4;
   constexpr double kSlack = 1e-2;
   constexpr double kOfInterest = 0.3, kLeast = 0.3, kMost = 1.1;
@@ -45,9 +47,11 @@ std::vector<Shares> corrections(const BarrierProblem& problem, const SquareRate&
   for (size_t k = 0; k < spans.size(); ++k) {
     const Shares real = bound_shares(course, spans[k], kCells, kSlack).proven;
     const Shares now = problem.limit_factors(k);
-    factors.push_back({std::min(1.0, factor(meant[k].velocity, real.velocity, now.velocity)),
-                       factor(meant[k].acceleration, real.acceleration, now.acceleration),
-                       factor(meant[k].jerk, real.jerk, now.jerk)});
+    const double by_velocity = real.velocity > aim ? aim : 1.0;
+    factors.push_back(
+        {by_velocity * std::min(1.0, factor(meant[k].velocity, real.velocity, now.velocity)),
+         aim * factor(meant[k].acceleration, real.acceleration, now.acceleration),
+         aim * factor(meant[k].jerk, real.jerk, now.jerk)});
   }
   return factors;
 }
@@ -71,12 +75,34 @@ std::vector<bool> too_coarse(const Course& course, const std::vector<TimedSpan>&
 
 /// Where the tool is to keep a speed, it should be near it: the barriers of the ceilings get less
 /// and less weight.
-bool press_on_ceilings(BarrierProblem& problem, SquareRate& rate, double weight) {
-  for (double share = 0.2; share > 0.03; share *= 0.2) {
+bool press_on_ceilings(BarrierProblem& problem, SquareRate& rate, double weight, double least) {
+  for (double share = 0.2; share > least; share *= 0.2) {
     problem.set_ceiling_weight(share);
     if (!problem.solve(rate, weight, weight)) return false;
   }
   return true;
+}
+
+/// The motion, with the speed held exactly where that breaks no limit beside it.
+std::vector<TimedSpan> hold_where_it_fits(const Course& course, const BarrierProblem& problem,
+                                          const SquareRate& rate) {
+  constexpr int kCells = 16, kMostRounds = 12;
+  std::vector<bool> held = problem.held_cells(rate);
+  std::vector<TimedSpan> spans = problem.spans(rate, held);
+  for (int round = 0; round < kMostRounds; ++round) {
+    const std::vector<bool> before = held;
+    for (size_t k = 0; k < spans.size(); ++k) {
+      const size_t first = k > 0 ? k - 1 : k, last = std::min(k + 1, spans.size() - 1);
+      const bool beside = before[first] || before[k] || before[last];
+      if (!beside || bound_shares(course, spans[k], kCells, kProofSlack).proven.stretch() <= 1.0) {
+        continue;
+      }
+      held[first] = held[k] = held[last] = false;
+    }
+    if (held == before) break;
+    spans = problem.spans(rate, held);
+  }
+  return spans;
 }
 
 /// The near-optimal timing; empty if the method does not get there.
@@ -84,8 +110,15 @@ Timing quickest(const Course& course) {
   constexpr double kFirstWeight = 0.1, kLastWeight = 0.006;
   constexpr int kMostPasses = 6;
   constexpr double kUsed = 0.99;
+  // Time cannot be stretched where a speed is held: there the motion is to come out below its
+  // limits, by more with every pass that fails.
+  constexpr double kAim = 0.98, kPressed = 0.03, kHeld = 1e-5;
+  const bool holds = course.holds_speed();
+  const double good_enough = holds ? 1.0 : kGoodEnough;
+  double aim = holds ? kAim : 1.0;
   Grid grid = make_grid(course);
   if (grid.cells.empty()) return {};
+  if (holds) grid = refine_to_hold(course, std::move(grid));
   std::optional<BarrierProblem> problem(std::in_place, course, grid);
   SquareRate rate = problem->start();
   bool solved = problem->solve(rate, kFirstWeight, kFirstWeight);
@@ -94,23 +127,35 @@ Timing quickest(const Course& course) {
     // The optimiser sees limits at a few places of a cell and b as a cubic in s; the motion is a
     // quintic in time and held to its limits everywhere. Where the two differ, the limits given to
     // the optimiser are corrected while it still keeps its distance from them.
-    problem->set_limit_factors(corrections(*problem, rate, course, problem->spans(rate), kUsed));
+    problem->set_limit_factors(
+        corrections(*problem, rate, course, problem->spans(rate), kUsed, aim));
     // What it has when the numbers give out is a motion too.
     solved = solved && problem->solve(rate, kLastWeight, kLastWeight);
-    if (course.limits_tool()) solved = solved && press_on_ceilings(*problem, rate, kLastWeight);
-    Timing timing{problem->spans(rate), kInfinite};
+    if (course.limits_tool())
+      solved = solved && press_on_ceilings(*problem, rate, kLastWeight, holds ? kHeld : kPressed);
+    Timing timing{holds ? hold_where_it_fits(course, *problem, rate) : problem->spans(rate),
+                  kInfinite};
     if (std::all_of(timing.spans.begin(), timing.spans.end(), goes_forward)) {
       timing.stretch = prove(course, timing.spans, kProofSlack).stretch();
-      stretch_time(timing.spans, timing.stretch * kMargin);
+      if (holds)
+        timing.stretch = std::max(timing.stretch, largest_held_speed(course, timing.spans));
+      const bool kept = holds && timing.stretch <= 1.0;
+      stretch_time(timing.spans, kept ? 1.0 : timing.stretch * kMargin);
+      if (kept) return timing;
       if (best.spans.empty() || total_duration(timing.spans) < total_duration(best.spans)) {
         best = timing;
       }
     }
-    if (timing.stretch <= kGoodEnough || pass == kMostPasses || !solved) return best;
+    if (timing.stretch <= good_enough || pass == kMostPasses || !solved) return best;
+    if (holds) aim *= kAim;
     // Where a correction does not help enough, cells are too long.
     grid = refine(grid, too_coarse(course, problem->spans(rate)), rate);
     problem.emplace(course, grid);
-    problem->make_feasible(rate, 0);
+    if (holds) {
+      rate = problem->start();
+    } else {
+      problem->make_feasible(rate, 0);
+    }
     solved = problem->solve(rate, kFirstWeight, kFirstWeight);
   }
 }
@@ -128,7 +173,9 @@ std::vector<TimedSpan> slowest(const Course& course, const JointLimits& limits,
   const JointPath path = course.in_one_scale();
   // The ceilings are bounds already, so proof can only shorten what they give.
   auto spans = seven_phases(path, within_range(uniform_ceilings(path, limits, tool), path, limits));
-  stretch_time(spans, std::min(1.0, kMargin * prove(course, spans, kProofSlack).stretch()));
+  const double proven =
+      std::max(prove(course, spans, kProofSlack).stretch(), largest_held_speed(course, spans));
+  stretch_time(spans, std::min(1.0, kMargin * proven));
   return spans;
 }
 

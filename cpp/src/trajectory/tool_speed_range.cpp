@@ -48,10 +48,27 @@ Magnitudes magnitudes(const Square& c) {
   return m;
 }
 
+/// A bound of f on an interval by its ends and sup |f''|, halved while it exceeds `known`.
+template <typename Function>
+struct Search {
+  const Function& f;
+  double second, known;
+
+  [[nodiscard]] double bound(double from, double to, double first, double last,
+                             int halvings) const {
+    const double width = to - from;
+    const double most = std::max(first, last) + 0.125 * second * width * width;
+    if (most <= known || halvings == 0) return most;
+    const double middle = 0.5 * (from + to), value = f(middle);
+    return std::max(bound(from, middle, first, value, halvings - 1),
+                    bound(middle, to, value, last, halvings - 1));
+  }
+};
+
 }  // namespace
 
 SpeedRange tool_speed_range(const std::array<double, 6>& timing, double duration,
-                            const ToolRate& rate) {
+                            const ToolRate& rate, double asked) {
   constexpr int kParts = 64;
   const auto& t = timing;
   double end = 0.0;
@@ -75,23 +92,30 @@ SpeedRange tool_speed_range(const std::array<double, 6>& timing, double duration
   const double second =
       ((g.bend * y1 * y1 + g.slope * y2) * slope + 4.0 * g.slope * y1 * bend) * slope +
       2.0 * g.value * (bend * bend + slope * jerk);
-  const double between = second / (8.0 * kParts * kParts) + 1e-14 * g.value * slope * slope;
-  double least = std::numeric_limits<double>::infinity(), most = 0.0;
-  for (int k = 0; k <= kParts; ++k) {
-    const double x = static_cast<double>(k) / kParts;
+  const double rounding = 1e-14 * g.value * slope * slope;
+  const auto value_at = [&](double x) {
     const double u = t[0] + x * (t[1] + x * (t[2] + x * (t[3] + x * (t[4] + x * t[5]))));
     const double u1 = t[1] + x * (2 * t[2] + x * (3 * t[3] + x * (4 * t[4] + x * 5 * t[5])));
     const double y = (u - middle) / radius;
     double value = 0.0;
     for (std::size_t i = kSquareSize; i-- > 0;) value = value * y + square[i];
-    value *= u1 * u1;
-    least = std::min(least, value);
-    most = std::max(most, value);
-  }
+    return value * u1 * u1;
+  };
   const double error = rate.error * slope;
+  const double known = std::max(0.0, asked * duration - error);
+  const Search search{value_at, second, known * known};
+  double least = std::numeric_limits<double>::infinity(), most = 0.0, before = 0.0;
+  for (int k = 0; k <= kParts; ++k) {
+    const double x = static_cast<double>(k) / kParts;
+    const double value = value_at(x);
+    least = std::min(least, value);
+    if (k > 0) most = std::max(most, search.bound(x - 1.0 / kParts, x, before, value, 8));
+    before = value;
+  }
   range.reached = std::sqrt(std::max(0.0, least)) / duration;
-  range.least = std::max(0.0, std::sqrt(std::max(0.0, least - between)) - error) / duration;
-  range.most = (std::sqrt(std::max(0.0, most + between)) + error) / duration;
+  const double low = least - second / (8.0 * kParts * kParts) - rounding;
+  range.least = std::max(0.0, std::sqrt(std::max(0.0, low)) - error) / duration;
+  range.most = (std::sqrt(std::max(0.0, most + rounding)) + error) / duration;
   return range;
 }
 

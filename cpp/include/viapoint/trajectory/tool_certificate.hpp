@@ -22,8 +22,10 @@ struct SpeedRange {
 /// By 65 samples of ‖w(u)‖² u̇², whose second derivative is bounded from the coefficients of ‖w‖²
 /// about the middle: where the speed is about constant, so is the bound, on arcs as on lines.
 /// @param timing, duration u(x), as of a TrajectoryPiece
+/// @param asked a speed at which `most` matters: up to eight halvings between samples, where it is
+///        not known to lie below
 [[nodiscard]] SpeedRange tool_speed_range(const std::array<double, 6>& timing, double duration,
-                                          const ToolRate& rate);
+                                          const ToolRate& rate, double asked);
 
 /// Gathers the worst shares of the tool's limits, piece by piece. Branch and bound over time: an
 /// interval is bounded by its ends and the error of linear interpolation between them, Δt²/8 times

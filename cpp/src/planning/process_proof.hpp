@@ -1,0 +1,45 @@
+/// @file
+/// Where a process speed is proven to be held, and what rules where it is not.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "viapoint/core/joint_limits.hpp"
+#include "viapoint/path/tool_rates.hpp"
+#include "viapoint/planning/motion_planner.hpp"
+#include "viapoint/trajectory/trajectory_piece.hpp"
+
+namespace viapoint::planning {
+
+/// The pieces of a motion come in the order of time, those without a process speed left out.
+class ProcessProof {
+ public:
+  /// @param time where the piece begins [s]
+  void add(const JointLimits& limits, const TrajectoryPiece& piece, const ToolRates& rates,
+           double time);
+  [[nodiscard]] std::vector<ProcessStretch> take();
+
+ private:
+  /// A limit, and how much of it something takes.
+  struct Ruling {
+    double share = 0.0;
+    std::string limit;
+    std::optional<int> joint;
+  };
+
+  void begin(const TrajectoryPiece& piece, double speed, double time);
+  void end();
+  void judge(const JointLimits& limits, const TrajectoryPiece& piece, const ToolRates& rates);
+
+  std::vector<ProcessStretch> stretches_;
+  bool open_ = false;       ///< the last of stretches_ may go on
+  bool rests_ = false;      ///< the arm starts or stops in it
+  Ruling holding_, using_;  ///< what holding the speed would take of a limit, and what is taken
+  double time_ = -1.0, way_ = 0.0;  ///< where the last piece ended [s], and the way up to there [m]
+};
+
+[[nodiscard]] Problem warning_of(const ProcessStretch& stretch);
+
+}  // namespace viapoint::planning
