@@ -232,7 +232,7 @@ void beside_eaik(const std::string& name, const RobotModel& robot, int poses) {
   for (int i = 0; i < poses; ++i) {
     const JointVector made_by = random_joints(robot.limits(), generator);
     const Pose pose = robot.forward().pose(made_by);
-    const Eigen::Matrix4d matrix = pose.matrix();
+    const Eigen::Matrix4d& matrix = pose.matrix();
     BranchSet branches;
     IKS::IK_Eigen_Solution found;
     ours.add(time_of([&] { (void)robot.inverse().solve_branches(pose, made_by, branches); }) - own);

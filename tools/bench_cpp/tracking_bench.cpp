@@ -30,6 +30,15 @@ struct Tally {
   int only_followed = 0;    ///< refused though the poses can be followed one by one
 };
 
+bool can_be_followed(const RobotModel& robot, const testing::Line& line) {
+  try {
+    (void)follow_poses(robot, line.poses, line.start);
+    return true;
+  } catch (const MotionError&) {
+    return false;
+  }
+}
+
 /// The same line as a move of a program, from the joints that the poses are followed from.
 void plan(const RobotPtr& robot, const testing::Line& line, bool followed, Tally& tally) {
   MotionProgram program;
@@ -82,12 +91,7 @@ void follow(const RobotPtr& arm_model, const testing::LineArm& arm, bool through
     tally.changes += error.code() == ErrorCode::kBranchChange ? 1 : 0;
     const testing::Line finer = testing::random_line(robot, arm.singular_joint, through, number,
                                                      kFiner * testing::kLineSteps);
-    try {
-      (void)follow_poses(robot, finer.poses, finer.start);
-      ++tally.quick;
-    } catch (const MotionError&) {
-      // It has to change branch however short the steps.
-    }
+    tally.quick += can_be_followed(robot, finer) ? 1 : 0;
   }
   plan(arm_model, line, followed, tally);
 }
