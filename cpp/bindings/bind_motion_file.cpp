@@ -238,9 +238,18 @@ void bind_motion_file(py::module_& m) {
       .def_property_readonly(
           "tool", [](const WantedLeg& leg) { return tool_of(*leg.robot); },
           "In the frame of the last joint, (4, 4).")
-      .def_property_readonly("speed", [](const WantedLeg& leg) { return leg.options.speed; })
+      .def_property_readonly(
+          "speed",
+          [](const WantedLeg& leg) {
+            return leg.options.process_speed ? leg.options.process_speed : leg.options.speed;
+          },
+          "The tool's largest, a process speed too [m/s].")
       .def_property_readonly("acceleration",
                              [](const WantedLeg& leg) { return leg.options.acceleration; })
+      .def_property_readonly("angular_speed",
+                             [](const WantedLeg& leg) { return leg.options.angular_speed; })
+      .def_property_readonly("angular_acceleration",
+                             [](const WantedLeg& leg) { return leg.options.angular_acceleration; })
       .def_property_readonly("scale", [](const WantedLeg& leg) { return leg.options.scale; });
   m.def(
       "wanted_legs",

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "planning/corner_words.hpp"
+
 namespace viapoint::planning {
 
 TrajectoryPiece rest_at(const JointVector& q, double seconds, int step) {
@@ -37,6 +39,7 @@ Problem warning_of(const CornerOutcome& corner) {
   problem.limit = corner.asked.size;
   problem.message = corner.stopped ? "the zone became a stop: " : "the zone was shrunk: ";
   problem.message += corner.reason;
+  problem.ways_out = ways_out_of(corner);
   return problem;
 }
 
