@@ -155,6 +155,20 @@ def choice(value: object, name: str, allowed: tuple[str, ...]) -> str:
     raise BadArgumentError(f"{name} is {_short(value)}; it must be one of {words}.")
 
 
+def file_name(path: object) -> str:
+    """Return the name of a file.
+
+    Raises
+    ------
+    BadArgumentError
+        Neither text nor a path of text.
+    """
+    name = os.fspath(path) if isinstance(path, os.PathLike) else path
+    if not isinstance(name, str):
+        raise BadArgumentError(f"path is {_short(path)}; it must be the name of a file.")
+    return name
+
+
 @contextmanager
 def writing(path: str | os.PathLike[str]) -> Iterator[None]:
     """Name the file in what the system says against writing it.
@@ -164,7 +178,7 @@ def writing(path: str | os.PathLike[str]) -> Iterator[None]:
     FileError
         With the path and the system's reason.
     """
-    name = os.fspath(path)
+    name = file_name(path)
     if "\0" in name:
         raise FileError(
             f"{name!r} cannot be written: the name of a file cannot hold a NUL character.",

@@ -13,7 +13,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from ._arguments import ArrayLike, Vector, number, numbers_of
+from ._arguments import ArrayLike, Vector, file_name, number, numbers_of
 from ._plots import ENDINGS, LIMIT, LINE, SWEEP, save_figure
 from .errors import BadArgumentError
 
@@ -75,9 +75,9 @@ def save_law_plot(law: Course, path: str | os.PathLike[str], title: str, marks: 
     FileError
         The file cannot be written.
     """
-    if Path(path).suffix not in ENDINGS:
+    if Path(file_name(path)).suffix not in ENDINGS:
         raise BadArgumentError(
-            f'path is "{os.fspath(path)}"; a picture ends in {", ".join(ENDINGS)}.'
+            f'path is "{file_name(path)}"; a picture ends in {", ".join(ENDINGS)}.'
         )
     save_figure(draw_law(law, title, marks), path)
 

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from ._arguments import Vector, choice, writing
+from ._arguments import Vector, choice, file_name, writing
 from ._proof_plot import draw_proof
 from ._samples import Samples
 from .errors import BadArgumentError
@@ -36,9 +36,9 @@ ENDINGS = (".png", ".svg", ".pdf")
 def save_plot(motion: Motion, path: str | os.PathLike[str], what: str) -> None:
     """Draw one picture of a planned motion into a file."""
     kind = choice(what, "what", ("proof", "joints", "tool", "path"))
-    if Path(path).suffix not in ENDINGS:
+    if Path(file_name(path)).suffix not in ENDINGS:
         raise BadArgumentError(
-            f'path is "{os.fspath(path)}"; a picture ends in {", ".join(ENDINGS)}.'
+            f'path is "{file_name(path)}"; a picture ends in {", ".join(ENDINGS)}.'
         )
     samples = motion.sample(max(0.001, motion.duration / MOST_SAMPLES))
     save_figure((draw_proof if kind == "proof" else DRAWINGS[kind])(samples, motion), path)
@@ -48,7 +48,7 @@ def save_figure(figure: Figure, path: str | os.PathLike[str]) -> None:
     """Write a figure into a file whose ending names the format."""
     FigureCanvasAgg(figure)
     with writing(path):
-        figure.savefig(os.fspath(path), dpi=PIXELS_PER_INCH)
+        figure.savefig(file_name(path), dpi=PIXELS_PER_INCH)
 
 
 def draw_joints(samples: Samples, motion: Motion) -> Figure:

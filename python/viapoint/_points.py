@@ -14,7 +14,7 @@ from typing import Literal
 import numpy as np
 
 from . import _core
-from ._arguments import ArrayLike, Vector, choice, vector, writing
+from ._arguments import ArrayLike, Vector, choice, file_name, vector, writing
 from ._point_file import FORMAT, VERSION, TaughtPoint, is_text, read_points
 from ._program import Program
 from ._robot import Robot, load_robot, require_robot, require_within_limits
@@ -54,7 +54,7 @@ class PointList:
     """
 
     def __init__(self, path: str | os.PathLike[str], robot: Robot | None = None) -> None:
-        self.path = Path(path)
+        self.path = Path(file_name(path))
         if robot is None and not self.path.exists():
             raise FileError(
                 f"There is no point file {self.path}.",

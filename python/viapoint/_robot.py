@@ -8,7 +8,7 @@ from typing import cast
 import numpy as np
 
 from . import _core
-from ._arguments import ArrayLike, Vector, integer, numbers_of, pose, shown, vector
+from ._arguments import ArrayLike, Vector, file_name, integer, numbers_of, pose, shown, vector
 from ._envelope import joint_envelope
 from ._workspace import Workspace
 from .errors import (
@@ -133,7 +133,7 @@ class Robot(Workspace):
         FileError
             With the path and the system's reason.
         """
-        name = os.fspath(path)
+        name = file_name(path)
         if not name.endswith(".yaml"):
             raise BadArgumentError(f'path is "{name}"; a robot\'s file ends in .yaml.')
         _core.write_file_atomically(name, self._core.to_yaml())

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arguments import Vector, writing
+from ._arguments import Vector, file_name, writing
 from ._motion import Motion
 from ._robot import Robot
 from ._samples import Samples
@@ -111,7 +111,7 @@ class RunLog:
         """
         columns = {f.name: getattr(self, f.name) for f in fields(self) if f.repr}
         with writing(path):
-            np.savez_compressed(os.fspath(path), **columns)
+            np.savez_compressed(file_name(path), **columns)
 
     def save_csv(self, path: str | os.PathLike[str]) -> None:
         """Write one line a cycle, as ``viapoint-controller --log`` does.
@@ -123,4 +123,4 @@ class RunLog:
         FileError
             With the path and the system's reason.
         """
-        self.core.save_csv(os.fspath(path))
+        self.core.save_csv(file_name(path))

@@ -8,6 +8,7 @@ from pathlib import Path
 from rich.markup import escape
 from rich.table import Table
 
+from ._arguments import file_name
 from .errors import BadProgramError, FileError
 from .verifier import MotionFileError, Verdict, verify
 
@@ -32,7 +33,7 @@ def verdict_on(path: str | os.PathLike[str]) -> Verdict:
     FileError
         It cannot be read.
     """
-    name = os.fspath(path)
+    name = file_name(path)
     try:
         return verify(name)
     except MotionFileError as error:

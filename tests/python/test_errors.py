@@ -127,3 +127,18 @@ def test_a_wish_that_would_take_for_ever_has_a_way_out(puma, abc, wish):
     problem = next(p for p in report if wish in p.message)
     assert "1e-09" in problem.message
     assert problem.ways_out
+
+
+@pytest.mark.parametrize("path", [3, None, b"p.json", 1.5, ["p.json"]])
+def test_what_is_no_name_of_a_file_is_refused_by_name(short, path):
+    motion = short.plan()
+    for use in (
+        vp.Program.load,
+        short.save,
+        short.robot.save,
+        motion.save,
+        motion.plot,
+        lambda given: vp.PointList(given, short.robot),
+    ):
+        with pytest.raises(errors.BadArgumentError, match="must be the name of a file"):
+            use(path)
