@@ -102,7 +102,7 @@ TEST_P(SevenJoints, FindTheConfigurationOfThePoseUnderAnyLimits) {
   for (const bool narrow : {true, false}) {
     std::mt19937_64 generator(88);
     std::uniform_real_distribution<double> share(0.0, 1.0);
-    for (int problem = 0; problem < 300; ++problem) {
+    for (int problem = 0; problem < 120; ++problem) {
       SCOPED_TRACE(testing::Message() << (narrow ? "narrow" : "wide") << ", problem " << problem);
       RobotDescription description = load_description(GetParam());
       JointLimits& limits = description.limits;
@@ -165,7 +165,7 @@ TEST_P(SevenJoints, ASieveDropsOnlyBranchesThatBreakIt) {
 
 TEST_P(SevenJoints, GiveTheNearTurnsHoweverWideTheLimits) {
   const RobotPtr own = arm(GetParam());
-  for (const auto& [limit, problems] : {std::pair{2.0 * kPi, 20}, {50.0, 2}, {1e9, 2}}) {
+  for (const auto& [limit, problems] : {std::pair{2.0 * kPi, 8}, {50.0, 1}, {1e9, 1}}) {
     RobotDescription description = load_description(GetParam());
     description.limits.position_min.setConstant(-limit);
     description.limits.position_max.setConstant(limit);
@@ -179,10 +179,10 @@ TEST_P(SevenJoints, GiveTheNearTurnsHoweverWideTheLimits) {
       bool found = false;
       for (const JointVector& each : all) {
         ASSERT_LT(pose_distance(robot->fk(each), robot->fk(q)), 2e-9);
+        if (found || each.lpNorm<Eigen::Infinity>() > kPi + 1e-9) continue;
         const Configuration side = robot->inverse().configuration(each);
-        found = found || (each.lpNorm<Eigen::Infinity>() <= kPi + 1e-9 &&
-                          side.shoulder == made_by.shoulder && side.elbow == made_by.elbow &&
-                          side.wrist == made_by.wrist);
+        found = side.shoulder == made_by.shoulder && side.elbow == made_by.elbow &&
+                side.wrist == made_by.wrist;
       }
       ASSERT_TRUE(found);
       ASSERT_LT(all.size(), 100'000U);  // of each branch 4096 turns at most
