@@ -6,6 +6,9 @@ namespace viapoint::bench {
 
 /// Computing time of the interpolator's tick, in virtual time. @param ticks to measure a case
 void bench_tick(int ticks);
+/// Random motions under random commands (override, pause, step, backward), replayed against their
+/// geometry and limits. @param sequences to run
+void bench_commands(int sequences);
 /// Planning time a move. @param programs to plan a case
 void bench_plan(int programs);
 /// Time of the certificate a piece. @param programs whose motions are certified

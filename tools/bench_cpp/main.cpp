@@ -8,12 +8,13 @@
 namespace {
 
 constexpr std::string_view kUsage =
-    "usage: viapoint-bench tick [TICKS] | plan [PROGRAMS] | certificate [PROGRAMS] |\n"
-    "                      walk [PATHS] | growth [MOVES] | insertion [PROBLEMS] |\n"
-    "                      kinematics [POSES] | tracking [LINES] | all\n"
+    "usage: viapoint-bench tick [TICKS] | commands [SEQUENCES] | plan [PROGRAMS] |\n"
+    "                      certificate [PROGRAMS] | walk [PATHS] | growth [MOVES] |\n"
+    "                      insertion [PROBLEMS] | kinematics [POSES] | tracking [LINES] | all\n"
     "Prints one JSON object a line; times as its keys say.\n";
 
 constexpr int kTicks = 1'000'000;
+constexpr int kSequences = 10'000;
 constexpr int kPrograms = 100;
 constexpr int kPoses = 1'000'000;
 constexpr int kPaths = 20;
@@ -31,6 +32,7 @@ int count_of(int argc, char** argv, int otherwise) {
 
 int default_count(std::string_view command) {
   if (command == "tick") return kTicks;
+  if (command == "commands") return kSequences;
   if (command == "kinematics") return kPoses;
   if (command == "growth") return kMoves;
   if (command == "insertion") return kProblems;
@@ -51,6 +53,8 @@ int main(int argc, char** argv) {
   try {
     if (command == "tick") {
       bench_tick(count);
+    } else if (command == "commands") {
+      bench_commands(count);
     } else if (command == "plan") {
       bench_plan(count);
     } else if (command == "certificate") {
@@ -69,6 +73,7 @@ int main(int argc, char** argv) {
       bench_kinematics(kPoses);
       bench_tracking(kLines);
       bench_tick(kTicks);
+      bench_commands(kSequences);
       bench_plan(kPrograms);
       bench_certificate(kPrograms);
       bench_walk(kPaths);

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <functional>
+#include <random>
 
 #include "benches.hpp"
 #include "durations.hpp"
@@ -50,10 +51,12 @@ void run(const char* subject, const Trajectory& motion, const JointLimits& limit
       .add("pieces", motion.pieces().size())
       .add("p50_us", 1e6 * durations.quantile(0.5))
       .add("p99_us", 1e6 * durations.quantile(0.99))
+      .add("p99_9_us", 1e6 * durations.quantile(0.999))
       .add("p99_99_us", 1e6 * durations.quantile(0.9999))
       .add("max_us", 1e6 * durations.quantile(1.0))
       .add("processor_p50_us", 1e6 * processor.quantile(0.5))
       .add("processor_p99_us", 1e6 * processor.quantile(0.99))
+      .add("processor_p99_99_us", 1e6 * processor.quantile(0.9999))
       .add("processor_max_us", 1e6 * processor.quantile(1.0))
       .add("clock_us", 1e6 * clock_cost())
       .add("checksum", checksum);
@@ -73,6 +76,15 @@ void bench_tick(int ticks) {
   run("pause_and_resume", planned.trajectory, limits, ticks, [](Interpolator& interpolator, int i) {
     if (i % 100 == 0) interpolator.wish(i / 100 % 2 == 0 ? Wish::kRun : Wish::kPause);
   });
+  std::mt19937 random(1);
+  run("commands_at_random", planned.trajectory, limits, ticks,
+      [&random](Interpolator& interpolator, int) {
+        std::uniform_real_distribution<double> unit(0.0, 1.0);
+        if (unit(random) > 0.02) return;
+        if (unit(random) < 0.5) return interpolator.set_override(unit(random));
+        const double what = unit(random);
+        interpolator.wish(what < 0.2 ? Wish::kPause : what < 0.4 ? Wish::kBackward : Wish::kRun);
+      });
 }
 
 }  // namespace viapoint::bench

@@ -4,6 +4,7 @@ import json
 import subprocess
 from pathlib import Path
 
+from benches import instructions
 from benches.tables import Row
 
 SUBJECTS = ("tick", "plan", "certificate", "walk", "growth", "insertion", "kinematics", "tracking")
@@ -43,4 +44,8 @@ def read_lines(text: str) -> list[Row]:
 def measure(program: Path, subject: str, *, quick: bool) -> list[Row]:
     """Run one subject of viapoint-bench."""
     command = [str(program), subject, *([str(QUICK[subject])] if quick else [])]
-    return read_lines(subprocess.run(command, stdout=subprocess.PIPE, text=True, check=True).stdout)
+    text = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=True).stdout
+    rows = read_lines(text)
+    if subject == "tick" and not quick:
+        rows += instructions.measure(program)
+    return rows
