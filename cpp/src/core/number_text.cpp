@@ -2,6 +2,7 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 
 namespace viapoint {
 
@@ -9,6 +10,12 @@ std::string number_text(double value) {
   std::array<char, 32> digits{};  // 24 are needed at most
   const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
   return {digits.data(), end};
+}
+
+std::string rounded_text(double value) {
+  constexpr double kPlaces = 1e9;
+  constexpr double kWhole = 1e6;  // beyond, a double has no such places to round to
+  return number_text(std::abs(value) < kWhole ? std::round(value * kPlaces) / kPlaces : value);
 }
 
 }  // namespace viapoint

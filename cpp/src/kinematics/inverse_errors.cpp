@@ -9,13 +9,6 @@
 namespace viapoint {
 namespace {
 
-/// Without the digits that rounding made: what decides between a value and its limit is larger.
-std::string rounded_text(double value) {
-  constexpr double kPlaces = 1e9;
-  constexpr double kWhole = 1e6;  // beyond, a double has no such places to round to
-  return number_text(std::abs(value) < kWhole ? std::round(value * kPlaces) / kPlaces : value);
-}
-
 /// Largest element of RᵀR − I; not a number where the pose has one.
 double off_rotation(const Pose& pose) {
   const Eigen::Matrix3d r = pose.linear();

@@ -17,7 +17,6 @@
 namespace viapoint::planning {
 namespace {
 
-constexpr int kOutputs = 64;
 /// Speeds [m/s, rad/s], accelerations [m/s², rad/s²] and scale: below this a move takes for ever,
 /// above nothing is limited.
 constexpr double kLeastWish = 1e-6;
@@ -88,9 +87,9 @@ class ItineraryWalk::Walk {
   }
 
   void operator()(const SetOutput& output) {
-    if (output.index < 0 || output.index >= kOutputs) {
+    if (output.index < 0 || output.index >= kDigitalOutputs) {
       add(ErrorCode::kBadArgument, "digital output " + std::to_string(output.index) +
-                                       "; outputs are 0 to " + std::to_string(kOutputs - 1));
+                                       "; outputs are 0 to " + std::to_string(kDigitalOutputs - 1));
       return;
     }
     if (++outputs_here_ > kMaxOutputsAPiece) {

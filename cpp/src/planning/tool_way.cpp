@@ -76,14 +76,10 @@ std::unique_ptr<const OrientationCurve> turn_by_way_of(const Pose& from, const P
 }  // namespace
 
 std::string in_words(const RobotModel& robot, int joint, double value) {
-  char text[64];
-  if (robot.description().chain.empty() ||
-      robot.description().chain[static_cast<size_t>(joint)].type == JointType::kRevolute) {
-    std::snprintf(text, sizeof text, "%.2f°", value / kDegree);
-  } else {
-    std::snprintf(text, sizeof text, "%.4f m", value);
-  }
-  return text;
+  const auto& chain = robot.description().chain;
+  const bool turns =
+      chain.empty() || chain[static_cast<size_t>(joint)].type == JointType::kRevolute;
+  return turns ? rounded_text(value / kDegree) + "°" : rounded_text(value) + " m";
 }
 
 void require_within_limits(const RobotModel& robot, const JointVector& q, const char* what) {

@@ -8,9 +8,6 @@
 
 namespace viapoint {
 
-/// Digital outputs are 0 to 63: one bit each in what the drive is sent.
-inline constexpr int kDigitalOutputs = 64;
-
 /// Why `piece` is no piece of a motion of `joints` joints, as the end of a sentence that begins
 /// with the piece's name. Nothing if it is one. Real-time: not.
 [[nodiscard]] std::optional<std::string> find_fault(const TrajectoryPiece& piece, int joints);

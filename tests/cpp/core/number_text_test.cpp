@@ -33,5 +33,11 @@ TEST(NumberText, ReadsBackToTheSameBits) {
   }
 }
 
+TEST(RoundedText, LeavesOutTheDigitsOfRounding) {
+  EXPECT_EQ(rounded_text(0.1 + 0.2), "0.3");
+  EXPECT_EQ(rounded_text(160.00000001), "160.00000001");
+  EXPECT_EQ(rounded_text(1234567.1), "1234567.1");
+}
+
 }  // namespace
 }  // namespace viapoint

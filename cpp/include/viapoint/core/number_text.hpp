@@ -9,5 +9,8 @@ namespace viapoint {
 /// against its limit: two numbers that differ never look alike. "inf", "-inf" and "nan" for what
 /// is not finite. Real-time: not. Threads: any.
 [[nodiscard]] std::string number_text(double value);
+/// The same to nine places after the point, without the digits that rounding made, for values whose
+/// limits are further away than that. Real-time: not. Threads: any.
+[[nodiscard]] std::string rounded_text(double value);
 
 }  // namespace viapoint

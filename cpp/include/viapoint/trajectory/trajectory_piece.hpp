@@ -10,6 +10,9 @@
 
 namespace viapoint {
 
+/// Digital outputs are 0 to 63: one bit each in what the drive is sent.
+inline constexpr int kDigitalOutputs = 64;
+
 /// A digital output that changes when a piece begins.
 struct OutputChange {
   std::int16_t index = 0;
