@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _core
-from ._arguments import Vector
+from ._arguments import Vector, file_name
 from ._ruling import KINDS, Rule, rules_of
 from ._stretches import Stretch, stretches_of
 from .errors import EmptyProgramError
-from .verifier import FORMAT, VERSION, seal
+from .verifier import FORMAT, TOOL_RATES, VERSION, seal
 
 if TYPE_CHECKING:
     from ._motion import Motion
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 def save_motion(motion: Motion, path: str | os.PathLike[str]) -> None:
     """Write the file aside and rename it: a reader finds the old one or the new one."""
-    _core.write_file_atomically(os.fspath(path), motion_text(motion).decode())
+    _core.write_file_atomically(file_name(path), motion_text(motion).decode())
 
 
 def motion_text(motion: Motion) -> bytes:
@@ -160,7 +160,7 @@ class _Writer:
             row["position"] = _plain(leg.position)
             if leg.hold in ("pose", "axis"):
                 row["orientation"] = _plain(leg.orientation)
-            row |= {k: v for k in ("speed", "acceleration") if (v := getattr(leg, k)) is not None}
+            row |= {k: v for k in TOOL_RATES if (v := getattr(leg, k)) is not None}
         else:
             row["hold"] = "joints"
             row["joints"] = _plain(path)
@@ -203,13 +203,7 @@ class _Writer:
             of_path.append(min((scale_of[leg] for leg in legs), default=1.0))
         scales = np.array(of_path)[self._pieces.path_of]
         starts = np.concatenate([[0.0], np.cumsum(np.asarray(self._pieces.durations))])
-        worst = {
-            kind: [
-                {"value": e.value, "share": e.share, "time": e.time, "move": e.move}
-                for e in getattr(proof, kind)
-            ]
-            for kind in KINDS
-        }
+        worst = {kind: [_extremum(extremum) for extremum in getattr(proof, kind)] for kind in KINDS}
         rules = [
             {"from": r.start, "to": r.end, "kind": r.kind, "share": r.share}
             | ({} if r.joint is None else {"joint": r.joint})
@@ -217,6 +211,7 @@ class _Writer:
         ]
         return {
             **worst,
+            "tool": {name: _extremum(getattr(proof.tool, name)) for name in TOOL_RATES},
             "position_min": proof.position_min.tolist(),
             "position_max": proof.position_max.tolist(),
             "path_deviation": proof.path_deviation,
@@ -226,6 +221,10 @@ class _Writer:
             "duration": self._motion.duration,
             "rules": rules,
         }
+
+
+def _extremum(worst: _core.Extremum) -> dict[str, Any]:
+    return {"value": worst.value, "share": worst.share, "time": worst.time, "move": worst.move}
 
 
 def _path(stretch: Stretch) -> dict[str, Any]:

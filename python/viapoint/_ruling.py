@@ -31,7 +31,7 @@ class Rule:
     joint : int or None
         From 0; None for "rest" and "other".
     share : float
-        The largest share of any joint's limit in the middle of the stretch, 0 to 1.
+        Of that limit, in the middle of the stretch, 0 to 1; the largest of all where none rules.
     """
 
     start: float
@@ -84,6 +84,6 @@ def rules_of(motion: Motion, starts: Vector, scales: Vector) -> list[Rule]:
         number = int(which[cuts[k]])
         kind = ("rest", "other")[number + 2] if number < 0 else KINDS[number // joints]
         joint = None if number < 0 else number % joints
-        share = float(middle[k].max())
+        share = float(middle[k].max() if number < 0 else middle[k][number])
         rules.append(Rule(float(bounds[k]), float(bounds[k + 1]), kind, joint, share))
     return rules

@@ -145,6 +145,14 @@ def slower_wish(d):
     next(leg for leg in d["legs"] if leg.get("speed"))["speed"] = 0.1
 
 
+def claim_slower(d):
+    d["certificate"]["tool"]["speed"]["share"] *= 0.9
+
+
+def turn_less(d):
+    next(leg for leg in d["legs"] if leg["hold"] == "pose")["angular_speed"] = 1e-3
+
+
 def smaller_scale(d):
     d["legs"][0]["scale"] = 0.3
 
@@ -190,7 +198,9 @@ def swap_curve_for_less(d):
         (claim_less_of_a_zone, "leaves the zone"),
         (smaller_zone, "claims to use more"),
         (claim_cut, "zone_deviation"),
-        (slower_wish, "speed at the tool"),
+        (slower_wish, "speed of the tool is above"),
+        (claim_slower, "claims less speed of the tool"),
+        (turn_less, "angular speed of the tool is above"),
         (smaller_scale, "limit is broken"),
         (drop_leg_of_a_path, "belongs to no leg"),
         (drop_a_piece, "steps between"),

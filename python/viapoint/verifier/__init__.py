@@ -4,6 +4,7 @@ Only numpy and Python's own library are used, so that the folder also works alon
 ``python -m verifier move.json``.
 """
 
+from ._file_parts import TOOL_RATES
 from ._findings import Finding, Proof, Verdict
 from ._motion_file import FORMAT, VERSION, MotionFile, read
 from ._samples import deviations
@@ -13,6 +14,7 @@ from ._verify import verify, verify_bytes
 
 __all__ = [
     "FORMAT",
+    "TOOL_RATES",
     "VERSION",
     "Finding",
     "MotionFile",

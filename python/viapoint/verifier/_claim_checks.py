@@ -14,6 +14,8 @@ from ._zone_checks import points_at
 
 SLACK = 1e-6
 SAME_TIME = 1e-9
+BESIDE = 1e-7
+"""How far beside the middle of a stretch, by its length."""
 
 
 def check_claims(motion: MotionFile, verdict: Verdict) -> None:
@@ -45,15 +47,17 @@ def _check_rules(motion: MotionFile, verdict: Verdict) -> None:
     end = 0.0
     rules = motion.certificate["rules"]
     middles = np.array([0.5 * (rule["from"] + rule["to"]) for rule in rules])
-    of_kind = [rates_at(motion, middles, i + 1) for i in range(len(KINDS))]
-    all_shares = np.stack(of_kind, axis=1) / motion.limits.rates
-    for k, (rule, shares) in enumerate(zip(rules, all_shares, strict=True)):
+    widths = np.array([rule["to"] - rule["from"] for rule in rules])
+    # Just before and after: jerk may step in the middle itself.
+    sides = np.stack([_shares(motion, middles + side * widths) for side in (-BESIDE, BESIDE)])
+    for k, rule in enumerate(rules):
         if abs(rule["from"] - end) > SAME_TIME * max(end, 1.0):
             verdict.findings.append(Finding(f"rule {k} does not begin where the one before ends"))
         end = float(rule["to"])
-        there = float(shares.max())
+        both = sides[:, k].max(axis=(1, 2))
         if rule["kind"] in KINDS:
-            there = float(shares[KINDS.index(rule["kind"]), rule["joint"]])
+            both = sides[:, k, KINDS.index(rule["kind"]), rule["joint"]]
+        there = float(np.clip(rule["share"], both.min(), both.max()))
         if abs(there - rule["share"]) > 1e-4:
             verdict.findings.append(
                 Finding(
@@ -66,6 +70,13 @@ def _check_rules(motion: MotionFile, verdict: Verdict) -> None:
             )
     if abs(end - motion.starts[-1]) > SAME_TIME * max(end, 1.0):
         verdict.findings.append(Finding("the rules end before the motion does, or after"))
+
+
+def _shares(motion: MotionFile, times: Array) -> Array:
+    """Find all joints' shares of their limits, (k, 3, n)."""
+    rates = [rates_at(motion, times, i + 1) for i in range(len(KINDS))]
+    shares: Array = np.stack(rates, axis=1) / motion.limits.rates
+    return shares
 
 
 def least_manipulability(motion: MotionFile, chain: Chain) -> float:

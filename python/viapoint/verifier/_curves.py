@@ -9,7 +9,15 @@ import numpy as np
 
 from ._balls import ROUNDING, WIDER, Array, Ball, Indices, join
 from ._chain import apply, column, quaternion
-from ._jets import ORDER, constant, over_interval, product, sine_cosine_jets, split_jets
+from ._jets import (
+    ORDER,
+    constant,
+    differentiated,
+    over_interval,
+    product,
+    sine_cosine_jets,
+    split_jets,
+)
 
 SERIES_TERMS = 16
 LARGEST_TURN = 10.0
@@ -169,6 +177,14 @@ def relative_turn(curve: Ball, tool: Ball) -> Ball:
     a, b = tool[:, :1], tool[:, 1:]
     cross = _crossed(v, b)
     return product(w, b) - product(a, v) - cross
+
+
+def angular_velocity(turn: Ball, rate: Array) -> Ball:
+    """Jets of 2 (dQ/dt) Q*, base frame, (p, 3, N), from those of unit quaternions Q."""
+    w, v = turn[:-1, :1], turn[:-1, 1:]
+    slope = differentiated(turn, rate)
+    a, b = slope[:, :1], slope[:, 1:]
+    return (product(w, b) - product(a, v) - _crossed(b, v)).scaled(2.0)
 
 
 def half_axis_off(curve: Ball, tool: Ball) -> Ball:

@@ -24,6 +24,7 @@ from ._strict_json import (
 MOST_JOINTS = 16
 MOST_STEPS = 10**9
 ROTATION_SLACK = 1e-9
+TOOL_RATES = ("speed", "acceleration", "angular_speed", "angular_acceleration")
 HOLDS = ("joints", "pose", "axis", "position", "wrist")
 TURNING = ("pose", "axis")
 """Those that hold the orientation, or its z axis."""
@@ -56,6 +57,8 @@ class Leg:
     length: float
     speed: float | None
     acceleration: float | None
+    angular_speed: float | None
+    angular_acceleration: float | None
     scale: float
 
 
@@ -151,7 +154,7 @@ def leg_in(value: object, place: str, n: int, tools: int) -> Leg:
         value,
         place,
         "move tool hold length",
-        "joints position orientation speed acceleration scale file line",
+        "joints position orientation scale file line " + " ".join(TOOL_RATES),
     )
     hold = text(given["hold"], f"{place}.hold", HOLDS)
     joints: Quintics | None = None
@@ -181,8 +184,7 @@ def leg_in(value: object, place: str, n: int, tools: int) -> Leg:
         position=position,
         orientation=orientation,
         length=length,
-        speed=optional_number(given.get("speed"), f"{place}.speed", 1e-9),
-        acceleration=optional_number(given.get("acceleration"), f"{place}.acceleration", 1e-9),
+        **{name: optional_number(given.get(name), f"{place}.{name}", 1e-9) for name in TOOL_RATES},
         scale=scale,
     )
 

@@ -85,8 +85,8 @@ def constant(values: Ball) -> Ball:
 def _convolved(a: Array, b: Array) -> Array:
     shape = np.broadcast_shapes(a.shape, b.shape)
     out = np.zeros(shape)
-    for i in range(ORDER + 1):
-        out[i:] += a[i] * b[: ORDER + 1 - i]
+    for i in range(len(a)):
+        out[i:] += a[i] * b[: len(a) - i]
     return out
 
 

@@ -26,6 +26,8 @@ CLAIM_EXCESS = 1e-6
 PARAMETER_SLACK = 2e-9
 """Of u outside [0, 1]."""
 GAP = 2e-10
+SAME_PLACE = 1e-9
+"""Of x: this far beside a knot is at it."""
 CHUNK = 1000
 UNITS = ("rad/s", "rad/s²", "rad/s³")
 
@@ -200,7 +202,7 @@ def rates_at(motion: MotionFile, times: Array, order: int) -> Array:
             state = derivative(state, motion.durations[rows])
         powers = np.clip(x, 0.0, 1.0)[:, None] ** np.arange(26)
         values = np.abs(np.einsum("knd,kd->kn", state.mid, powers))
-        inside = (x >= -1e-6) & (x <= 1.0 + 1e-6)
+        inside = (x >= -SAME_PLACE) & (x <= 1.0 + SAME_PLACE)
         found = np.where(inside[:, None], np.maximum(found, values), found)
     return found
 

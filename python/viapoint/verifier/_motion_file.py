@@ -12,6 +12,7 @@ from ._chain import Chain
 from ._file_parts import (
     KINDS,
     MOST_STEPS,
+    TOOL_RATES,
     Corner,
     Leg,
     Limits,
@@ -163,7 +164,7 @@ def read(data: bytes) -> MotionFile:
 def _certificate(value: object, n: int) -> dict[str, Any]:
     worst = [*KINDS]
     plain = ["path_deviation", "angle_deviation", "zone_deviation", "manipulability", "duration"]
-    keys = [*worst, "position_min", "position_max", *plain, "rules"]
+    keys = [*worst, "tool", "position_min", "position_max", *plain, "rules"]
     given = members(value, "certificate", " ".join(keys))
     result: dict[str, Any] = {key: number(given[key], f"certificate.{key}", 0.0) for key in plain}
     for key in worst:
@@ -181,6 +182,15 @@ def _certificate(value: object, n: int) -> dict[str, Any]:
                 [number(r[name], f"{place}[{i}].{name}", 0.0) for i, r in enumerate(rows)]
             )
             for name in ("value", "share", "time")
+        }
+    tool = members(given["tool"], "certificate.tool", " ".join(TOOL_RATES))
+    result["tool"] = {}
+    for key in TOOL_RATES:
+        place = f"certificate.tool.{key}"
+        row = members(tool[key], place, "value share time move")
+        integer(row["move"], f"{place}.move", 0, MOST_STEPS)
+        result["tool"][key] = {
+            name: number(row[name], f"{place}.{name}", 0.0) for name in ("value", "share", "time")
         }
     for key in ("position_min", "position_max"):
         result[key] = array(given[key], f"certificate.{key}", (n,))

@@ -1,37 +1,42 @@
-"""Speed and acceleration of the tool point, where the program asks for a limit of them."""
+"""Rates of the tool, linear and angular, where the program asks for a limit of them."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from ._balls import Array, Ball, Indices
-from ._chain import tool_point
+from ._chain import tool_point, tool_rotation
+from ._curves import angular_velocity
+from ._file_parts import TOOL_RATES
 from ._findings import Finding, Verdict
 from ._jets import constant, differentiated, largest, polynomial_jets, product
 from ._motion_file import MotionFile
 from ._search import prove_below
 
 SHARE_SLACK = 1e-6
+CLAIM_SLACK = 1e-8
+"""Of a claimed share below what is reached."""
 
 
 def check_tool_rates(motion: MotionFile, verdict: Verdict) -> None:
     """Prove the limits at the tool of every piece that has one; in a corner both legs' count."""
     if motion.chain is None:
         return
-    for order, name in ((1, "speed"), (2, "acceleration")):
+    for name in TOOL_RATES:
         limits = np.array([_limit(motion, int(path), name) for path in motion.path_of])
         pieces = np.flatnonzero(np.isfinite(limits) & motion.paths[motion.path_of, 1:].any((1, 2)))
         if len(pieces) == 0:
             continue
         before = len(verdict.findings)
-        rates = _Rates(motion, pieces, order, limits[pieces])
+        rates = _Rates(motion, pieces, name, limits[pieces])
         worst = prove_below(rates.bounds, np.full(len(pieces), 1.0 + SHARE_SLACK))
+        what = name.replace("_", " ")
         for item in np.flatnonzero(~worst.proven):
             piece = int(pieces[item])
             time = motion.starts[piece] + worst.at[item] * motion.durations[piece]
             verdict.findings.append(
                 Finding(
-                    f"the {name} at the tool is above what was asked for",
+                    f"the {what} of the tool is above what was asked for",
                     piece=piece,
                     move=int(motion.moves[piece]),
                     time=float(time),
@@ -39,10 +44,19 @@ def check_tool_rates(motion: MotionFile, verdict: Verdict) -> None:
                     limit=float(limits[piece]),
                 )
             )
+        claim, reached = motion.certificate["tool"][name]["share"], float(worst.reached.max())
+        if claim < reached * (1.0 - CLAIM_SLACK):
+            verdict.findings.append(
+                Finding(
+                    f"the certificate claims less {what} of the tool than is reached, in shares",
+                    value=claim,
+                    limit=reached,
+                )
+            )
         verdict.prove(
-            f"{name} at the tool, % of what was asked for",
+            f"{what} of the tool, % of what was asked for",
             f"{100 * worst.bound.max():.4f}",
-            "100",
+            "100, and as claimed",
             before,
         )
 
@@ -71,10 +85,14 @@ def _limit(motion: MotionFile, path: int, name: str) -> float:
 
 
 class _Rates:
-    def __init__(self, motion: MotionFile, pieces: Indices, order: int, limits: Array) -> None:
+    def __init__(self, motion: MotionFile, pieces: Indices, name: str, limits: Array) -> None:
+        if motion.chain is None:
+            raise ValueError("no chain")
         self._motion = motion
+        self._chain = motion.chain
         self._pieces = pieces
-        self._order = order
+        self._angular = name.startswith("angular")
+        self._order = 2 if name.endswith("acceleration") else 1
         self._limits = limits
 
     def bounds(self, items: Indices, middle: Array, half: Array) -> tuple[Array, Array]:
@@ -95,8 +113,13 @@ class _Rates:
         for number in np.unique(tools):
             chosen = np.flatnonzero(tools == number)
             columns = np.concatenate([chosen, chosen + len(items)])
-            jets = tool_point(motion.chain, motion.tools[number], q[..., columns])  # type: ignore[arg-type]
-            for _ in range(self._order):
+            tool = motion.tools[number]
+            if self._angular:
+                turn = tool_rotation(self._chain, tool, q[..., columns])
+                jets = angular_velocity(turn, rate[columns])
+            else:
+                jets = differentiated(tool_point(self._chain, tool, q[..., columns]), rate[columns])
+            if self._order == 2:
                 jets = differentiated(jets, rate[columns])
             bound[chosen], reached[chosen] = largest(jets)
         limits = self._limits[items]
