@@ -217,7 +217,7 @@ struct ControllerLoop::Impl {
 };
 
 ControllerLoop::ControllerLoop(std::unique_ptr<Drive> drive, const JointLimits& limits,
-                               LoopOptions options, std::unique_ptr<Clock> clock)
+                               const LoopOptions& options, std::unique_ptr<Clock> clock)
     : impl_(std::make_unique<Impl>(std::move(drive), limits, options, std::move(clock))) {}
 
 ControllerLoop::~ControllerLoop() = default;

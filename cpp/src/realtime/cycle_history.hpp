@@ -14,25 +14,25 @@ namespace viapoint {
 
 /// A ring that only the tick writes, and that others read once the tick has said that it writes no
 /// more.
-template <std::size_t kCapacity>
+template <std::size_t Capacity>
 class CycleHistory {
  public:
   /// Real-time: safe.
   void append(const LogRecord& record) noexcept VIAPOINT_NONBLOCKING {
-    records_[static_cast<std::size_t>(count_++ % kCapacity)] = record;
+    records_[static_cast<std::size_t>(count_++ % Capacity)] = record;
   }
   /// The oldest first. Real-time: not.
   [[nodiscard]] std::vector<LogRecord> records() const {
     std::vector<LogRecord> out;
-    const std::uint64_t first = count_ > kCapacity ? count_ - kCapacity : 0;
+    const std::uint64_t first = count_ > Capacity ? count_ - Capacity : 0;
     for (std::uint64_t k = first; k < count_; ++k) {
-      out.push_back(records_[static_cast<std::size_t>(k % kCapacity)]);
+      out.push_back(records_[static_cast<std::size_t>(k % Capacity)]);
     }
     return out;
   }
 
  private:
-  std::array<LogRecord, kCapacity> records_;
+  std::array<LogRecord, Capacity> records_;
   std::uint64_t count_ = 0;
 };
 

@@ -87,7 +87,8 @@ class ControllerLoop {
   /// Enables the drive and starts the loop thread.
   /// @throws MotionError(kDriveFault) when the drive cannot be enabled, or a thread not be created;
   ///   kBadArgument for options and for joints that do not fit the drive
-  ControllerLoop(std::unique_ptr<Drive> drive, const JointLimits& limits, LoopOptions options = {},
+  ControllerLoop(std::unique_ptr<Drive> drive, const JointLimits& limits,
+                 const LoopOptions& options = {},
                  std::unique_ptr<Clock> clock = std::make_unique<MonotonicClock>());
   ~ControllerLoop();
   ControllerLoop(const ControllerLoop&) = delete;
