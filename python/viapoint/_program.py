@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Literal
 
 from . import _core, _session
-from ._arguments import ArrayLike, choice, integer, number
+from ._arguments import ArrayLike, choice, file_name, integer, number
 from ._chunks import Chunk, chunks_of
 from ._curve_steps import CurveSteps
 from ._motion import Motion
@@ -375,7 +375,7 @@ class Program(CurveSteps):
         FileError
             With the path and the system's reason.
         """
-        self._core.save(os.fspath(path))
+        self._core.save(file_name(path))
 
     @classmethod
     def load(cls, path: str | os.PathLike[str], robot: Robot | None = None) -> Program:
@@ -395,7 +395,7 @@ class Program(CurveSteps):
         BadProgramError
             The file is damaged, or was written for another robot.
         """
-        name = os.fspath(path)
+        name = file_name(path)
         core = _core.load_program(name)
         arm = load_robot(core.robot) if robot is None else robot
         if core.robot_fingerprint and core.robot_fingerprint != arm.fingerprint:
