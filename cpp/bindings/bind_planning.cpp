@@ -212,6 +212,24 @@ void bind_certificate(py::module_& m) {
         return "<Corner move " + std::to_string(c.move) + ", " + zone_name(c.asked.kind) +
                (c.stopped ? ", stops" : ", used " + std::to_string(c.used)) + ">";
       });
+  py::class_<ProcessStretch>(
+      m, "ProcessStretch", "A stretch of motion in which a move could not hold its process speed.")
+      .def_readonly("move", &ProcessStretch::move, "Index of the move, from 0.")
+      .def_readonly("start", &ProcessStretch::from, "Where it begins [s].")
+      .def_readonly("end", &ProcessStretch::to, "Where it ends [s].")
+      .def_readonly("start_length", &ProcessStretch::from_length,
+                    "Way of the tool since the process began, where it begins [m].")
+      .def_readonly("end_length", &ProcessStretch::to_length, "The same where it ends [m].")
+      .def_readonly("process_speed", &ProcessStretch::process_speed, "Asked for [m/s].")
+      .def_readonly("lowest_speed", &ProcessStretch::lowest_speed, "[m/s]")
+      .def_readonly("limit", &ProcessStretch::limit,
+                    "What rules there: \"rest\" where the arm starts or stops, else the limit.")
+      .def_readonly("joint", &ProcessStretch::joint, "Whose limit that is, from 0; or None.")
+      .def("__repr__", [](const ProcessStretch& s) {
+        return "<ProcessStretch move " + std::to_string(s.move) + ", " + std::to_string(s.from) +
+               " to " + std::to_string(s.to) + " s, lowest " + std::to_string(s.lowest_speed) +
+               " m/s, " + s.limit + ">";
+      });
 }
 
 }  // namespace
@@ -229,6 +247,7 @@ void bind_planning(py::module_& m) {
                              [](const MotionHandle& p) { return p.trajectory->certificate(); })
       .def_readonly("corners", &MotionHandle::corners)
       .def_readonly("problems", &MotionHandle::problems)
+      .def_readonly("process_stretches", &MotionHandle::process_stretches)
       .def("sample", &sample, py::arg("dt"))
       .def("sample_at", &sample_at, py::arg("times"));
   m.def(
@@ -244,7 +263,8 @@ void bind_planning(py::module_& m) {
         PlannedMotion planned = MotionPlanner(robot.robot).plan(program);
         return MotionHandle{robot.robot,
                             std::make_shared<const Trajectory>(std::move(planned.trajectory)),
-                            std::move(planned.corners), std::move(planned.report.problems)};
+                            std::move(planned.corners), std::move(planned.report.problems),
+                            std::move(planned.process_stretches)};
       },
       py::arg("robot"), py::arg("program"), py::call_guard<py::gil_scoped_release>(),
       "Plans; raises the first error of the report.");

@@ -46,6 +46,7 @@ struct MotionHandle {
   std::shared_ptr<const Trajectory> trajectory;
   std::vector<CornerOutcome> corners;
   std::vector<Problem> problems;
+  std::vector<ProcessStretch> process_stretches = {};
 };
 
 /// Joints from Python: (n,), n <= kMaxJoints, and n == `expected` where that is not negative.

@@ -39,6 +39,7 @@ class CurveSteps(StepList):
         acceleration: float | None = None,
         angular_speed: float | None = None,
         angular_acceleration: float | None = None,
+        process_speed: float | None = None,
         scale: float | None = None,
         zone: ZoneLike | None = None,
     ) -> Self:
@@ -71,6 +72,9 @@ class CurveSteps(StepList):
             At most that at the tool's point [m/s], [m/s²].
         angular_speed, angular_acceleration : float, optional
             At most that of the tool's turning [rad/s], [rad/s²].
+        process_speed : float, optional
+            Tool speed to be kept wherever the limits allow [m/s], instead of `speed`; see
+            `Motion.process_stretches`.
         scale : float, optional
             Share of all joint limits, in (0, 1].
         zone : Zone, float or "fine", optional
@@ -86,6 +90,7 @@ class CurveSteps(StepList):
             acceleration=acceleration,
             angular_speed=angular_speed,
             angular_acceleration=angular_acceleration,
+            process_speed=process_speed,
             scale=scale,
             zone=zone,
         )
@@ -128,6 +133,7 @@ class CurveSteps(StepList):
         acceleration: float | None = None,
         angular_speed: float | None = None,
         angular_acceleration: float | None = None,
+        process_speed: float | None = None,
         scale: float | None = None,
         zone: ZoneLike | None = None,
     ) -> Self:
@@ -145,6 +151,9 @@ class CurveSteps(StepList):
             At most that at the tool's point [m/s], [m/s²].
         angular_speed, angular_acceleration : float, optional
             At most that of the tool's turning [rad/s], [rad/s²].
+        process_speed : float, optional
+            Tool speed to be kept wherever the limits allow [m/s], instead of `speed`; see
+            `Motion.process_stretches`.
         scale : float, optional
             Share of all joint limits, in (0, 1].
         zone : Zone, float or "fine", optional
@@ -160,6 +169,7 @@ class CurveSteps(StepList):
             acceleration=acceleration,
             angular_speed=angular_speed,
             angular_acceleration=angular_acceleration,
+            process_speed=process_speed,
             scale=scale,
             zone=zone,
         )
@@ -186,6 +196,7 @@ class CurveSteps(StepList):
         acceleration: float | None = None,
         angular_speed: float | None = None,
         angular_acceleration: float | None = None,
+        process_speed: float | None = None,
         scale: float | None = None,
         zone: ZoneLike | None = None,
     ) -> Self:
@@ -214,6 +225,9 @@ class CurveSteps(StepList):
             At most that at the tool's point [m/s], [m/s²]; of no meaning in joint space.
         angular_speed, angular_acceleration : float, optional
             At most that of the tool's turning [rad/s], [rad/s²]; of no meaning in joint space.
+        process_speed : float, optional
+            Tool speed to be kept wherever the limits allow [m/s], instead of `speed`; see
+            `Motion.process_stretches`.
         scale : float, optional
             Share of all joint limits, in (0, 1].
         zone : Zone, float or "fine", optional
@@ -229,6 +243,7 @@ class CurveSteps(StepList):
             acceleration=acceleration,
             angular_speed=angular_speed,
             angular_acceleration=angular_acceleration,
+            process_speed=process_speed,
             scale=scale,
             zone=zone,
         )

@@ -86,6 +86,15 @@ class Motion:
         return self._core.corners
 
     @property
+    def process_stretches(self) -> list[_core.ProcessStretch]:
+        """Where moves with a `process_speed` could not hold it, in the order of time.
+
+        Everywhere else on them the tool's speed is proven to lie within 1e-6 of it, and nowhere
+        above.
+        """
+        return self._core.process_stretches
+
+    @property
     def start(self) -> Vector:
         """Joints where the motion begins, (n,) [rad or m]."""
         first: Vector = self.at([0.0]).q[0]

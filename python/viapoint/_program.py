@@ -141,6 +141,7 @@ class Program(CurveSteps):
         acceleration: float | None = None,
         angular_speed: float | None = None,
         angular_acceleration: float | None = None,
+        process_speed: float | None = None,
         scale: float | None = None,
         zone: ZoneLike | None = None,
     ) -> Program:
@@ -160,6 +161,9 @@ class Program(CurveSteps):
             At most that at the tool's point [m/s], [m/s²].
         angular_speed, angular_acceleration : float, optional
             At most that of the tool's turning [rad/s], [rad/s²].
+        process_speed : float, optional
+            Tool speed to be kept wherever the limits allow [m/s], instead of `speed`; see
+            `Motion.process_stretches`.
         scale : float, optional
             Share of all joint limits, in (0, 1].
         zone : Zone, float or "fine", optional
@@ -175,6 +179,7 @@ class Program(CurveSteps):
             acceleration=acceleration,
             angular_speed=angular_speed,
             angular_acceleration=angular_acceleration,
+            process_speed=process_speed,
             scale=scale,
             zone=zone,
         )

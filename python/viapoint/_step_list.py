@@ -62,9 +62,15 @@ class StepList:
         acceleration: float | None = None,
         angular_speed: float | None = None,
         angular_acceleration: float | None = None,
+        process_speed: float | None = None,
         scale: float | None = None,
         zone: ZoneLike | None = None,
     ) -> _core.MoveOptions:
+        if speed is not None and process_speed is not None:
+            raise BadArgumentError(
+                "Both speed and process_speed are given; the second is the speed to hold, give "
+                "that alone."
+            )
         zone = self._zone if zone is None else zone_of(zone)
 
         def wish(value: float | None, name: str, unit: str, most: float = inf) -> float | None:
@@ -75,6 +81,9 @@ class StepList:
             acceleration=wish(acceleration, "acceleration", "m/s²"),
             angular_speed=wish(angular_speed, "angular_speed", "rad/s"),
             angular_acceleration=wish(angular_acceleration, "angular_acceleration", "rad/s²"),
+            process_speed=None
+            if process_speed is None
+            else number(process_speed, "process_speed", "m/s", above=0.0),
             scale=wish(scale, "scale", "", most=1.0),
             zone=zone.kind,
             size=zone.size,

@@ -37,6 +37,7 @@ __all__: list[str] = [
     "PlannedMotion",
     "PoseFit",
     "Problem",
+    "ProcessStretch",
     "RobotModel",
     "RunReport",
     "Singularity",
@@ -979,6 +980,57 @@ class Corner:
         Size really used, in the zone's own unit.
         """
 
+class ProcessStretch:
+    """
+    A stretch of motion in which a move could not hold its process speed.
+    """
+    def __repr__(self) -> str: ...
+    @property
+    def end(self) -> float:
+        """
+        Where it ends [s].
+        """
+    @property
+    def end_length(self) -> float:
+        """
+        The same where it ends [m].
+        """
+    @property
+    def joint(self) -> int | None:
+        """
+        Whose limit that is, from 0; or None.
+        """
+    @property
+    def limit(self) -> str:
+        """
+        What rules there: "rest" where the arm starts or stops, else the limit.
+        """
+    @property
+    def lowest_speed(self) -> float:
+        """
+        [m/s]
+        """
+    @property
+    def move(self) -> int:
+        """
+        Index of the move, from 0.
+        """
+    @property
+    def process_speed(self) -> float:
+        """
+        Asked for [m/s].
+        """
+    @property
+    def start(self) -> float:
+        """
+        Where it begins [s].
+        """
+    @property
+    def start_length(self) -> float:
+        """
+        Way of the tool since the process began, where it begins [m].
+        """
+
 class PlannedMotion:
     """
     A finished motion and its proof.
@@ -1003,6 +1055,8 @@ class PlannedMotion:
     def pieces(self) -> int: ...
     @property
     def problems(self) -> list[Problem]: ...
+    @property
+    def process_stretches(self) -> list[ProcessStretch]: ...
 
 class MotionPieces:
     """
