@@ -148,6 +148,8 @@ void bind_program(py::module_& m) {
           },
           py::arg("position"), py::arg("angle"),
           "How far the tool may be from its lines and curves [m, rad].")
+      .def(
+          "copy", [](const MotionProgram& program) { return program; }, "The program as it is now.")
       .def(py::init([](const RobotHandle& robot, const Eigen::VectorXd& start) {
              return MotionProgram{robot.robot->name(),
                                   robot.robot->fingerprint(),

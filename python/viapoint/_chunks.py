@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from . import _core
 from ._arguments import ArrayLike
-from ._motion import CYCLE, Motion
+from ._motion import CYCLE, Motion, Tools, tools_of
 from ._report import Report
 from ._samples import Samples
 
@@ -33,12 +33,12 @@ class Chunk:
         Warnings met since the chunk before.
     """
 
-    def __init__(self, core: _core.Chunk, program: Program) -> None:
+    def __init__(self, core: _core.Chunk, program: Program, tools: Tools) -> None:
         self.program = program
         self.begin: float = core.begin
         self.last: bool = core.last
         self.report = Report(core.motion.problems)
-        self._motion = Motion(core.motion, program, self.report)
+        self._motion = Motion(core.motion, program, program._core, self.report, tools)
 
     def __repr__(self) -> str:
         """Name, when it begins, and duration."""
@@ -97,16 +97,25 @@ class Chunk:
 
 def chunks_of(program: Program, moves: Iterable[object]) -> Iterator[Chunk]:
     """Plan what a program holds, and what `moves` adds to it, while it is added."""
-    kept = len(program)
+    kept = told = len(program)
+    tools = tools_of(program._core, program.robot)
     stream = _core.Stream(program.robot._core, program._core)
-    yield from _ready(stream, program)
+    yield from _ready(stream, program, tools)
     for _ in moves:
+        # The steps are counted on, though they are taken out of the program.
+        tools += tuple(
+            (told + step - kept, arm)
+            for step, arm in tools_of(program._core, program.robot)
+            if step >= kept
+        )
+        told += len(program) - kept
         stream.take(program._core, kept)
-        yield from _ready(stream, program)
+        yield from _ready(stream, program, tools)
+    stream.take(program._core, kept)
     stream.end()
-    yield from _ready(stream, program)
+    yield from _ready(stream, program, tools)
 
 
-def _ready(stream: _core.Stream, program: Program) -> Iterator[Chunk]:
+def _ready(stream: _core.Stream, program: Program, tools: Tools) -> Iterator[Chunk]:
     while (core := stream.next()) is not None:
-        yield Chunk(core, program)
+        yield Chunk(core, program, tools)

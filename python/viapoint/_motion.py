@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
@@ -24,23 +24,44 @@ CYCLE: float = _core.CYCLE
 """The controller's cycle [s]."""
 
 
+Tools: TypeAlias = tuple[tuple[int, Robot], ...]
+
+
+def tools_of(told: _core.MotionProgram, robot: Robot) -> Tools:
+    """From which step on a program moves another tool, and the arm with that tool."""
+    return tuple(
+        (step, robot if tool is None else robot.with_tool(tool)) for step, tool in told.tools()
+    )
+
+
 class Motion:
     """What `Program.plan` returns. Threads: any, at once.
 
     Attributes
     ----------
     program : Program
-        What was planned.
+        What was planned; steps told to it later are none of the motion.
     robot : Robot
         The arm that moves.
+    tools : tuple of (int, Robot)
+        From which step on the arm moves another tool, and the arm with that tool.
     report : Report
         Warnings; for timed programs also the limits they break.
     """
 
-    def __init__(self, core: _core.PlannedMotion, program: Program, report: Report) -> None:
+    def __init__(
+        self,
+        core: _core.PlannedMotion,
+        program: Program,
+        told: _core.MotionProgram,
+        report: Report,
+        tools: Tools | None = None,
+    ) -> None:
         self._core = core
         self.program = program
+        self._told = told
         self.report = report
+        self.tools = tools_of(told, program.robot) if tools is None else tools
 
     def __repr__(self) -> str:
         """Name and duration."""
@@ -50,15 +71,6 @@ class Motion:
     def robot(self) -> Robot:
         """The arm that moves."""
         return self.program.robot
-
-    @cached_property
-    def tools(self) -> tuple[tuple[int, Robot], ...]:
-        """From which step on the arm moves another tool, and the arm with that tool."""
-        own = self.robot
-        return tuple(
-            (step, own if tool is None else own.with_tool(tool))
-            for step, tool in self.program._core.tools()
-        )
 
     @property
     def duration(self) -> float:

@@ -54,9 +54,9 @@ def motion_rules(motion: Motion) -> list[Rule]:
 class _Writer:
     def __init__(self, motion: Motion) -> None:
         self._motion = motion
-        self._steps = json.loads(motion.program._core.to_json())["steps"]
+        self._steps = json.loads(motion._told.to_json())["steps"]
         self._pieces = _core.MotionPieces(motion._core)
-        self._legs = _core.wanted_legs(motion.robot._core, motion.program._core)
+        self._legs = _core.wanted_legs(motion.robot._core, motion._told)
         self._leg_of = {leg.move: i for i, leg in enumerate(self._legs)}
         self._tools: list[Vector] = []
 
@@ -142,7 +142,7 @@ class _Writer:
         }
 
     def _tolerance(self) -> dict[str, float]:
-        tolerance = json.loads(self._motion.program._core.to_json()).get("tolerance", {})
+        tolerance = json.loads(self._motion._told.to_json()).get("tolerance", {})
         return {
             "position": tolerance.get("position", _core.POSITION_TOLERANCE),
             "angle": tolerance.get("angle", _core.ANGLE_TOLERANCE),

@@ -233,7 +233,7 @@ def _target_points(motion: Motion) -> Vector:
     """Tool positions of the program's start and targets, (k, 3) [m]."""
     robot = motion.robot
     points = [robot.fk(motion.program.start)[:3, 3]]
-    for step, kind, value in motion.program._core.targets():
+    for step, kind, value in motion._told.targets():
         if kind == "joints":
             arms = [robot, *(arm for first, arm in motion.tools if first < step)]
             points.append(arms[-1].fk(value.reshape(-1))[:3, 3])

@@ -336,12 +336,13 @@ class Program(CurveSteps):
         MotionError
             The first error of the report.
         """
+        told = self._core.copy()
         try:
-            core = _core.plan(self.robot._core, self._core)
+            core = _core.plan(self.robot._core, told)
         except MotionError as error:
             _session.current().refused(self, error)
             raise
-        motion = Motion(core, self, Report(core.problems))
+        motion = Motion(core, self, told, Report(core.problems))
         _session.current().planned(motion)
         return motion
 

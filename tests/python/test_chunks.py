@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator
+from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 import pytest
 
 import viapoint as vp
+from viapoint import verifier
 
 Array = npt.NDArray[np.float64]
 
@@ -95,3 +97,39 @@ def test_an_error_comes_where_it_is_met(points: Array) -> None:
     with pytest.raises(vp.errors.JointLimitError) as refused:
         list(program.chunks(program.movej(q) for q in targets))
     assert refused.value.move == 15
+
+
+def test_chunks_know_the_tools_told_on_the_way() -> None:
+    robot = vp.load_robot("puma560")
+    home = np.radians([0.0, 25.0, 0.0, 15.0, 50.0, 10.0])
+    tool = np.eye(4)
+    tool[2, 3] = 0.2
+
+    def tell(program: vp.Program) -> Iterator[vp.Program]:
+        yield program.movej(home + 0.1)
+        yield program.set_tool(tool)
+        for k in range(12):
+            yield program.movej(home + 0.02 * k)
+
+    whole = vp.Program(robot, start=home)
+    for _ in tell(whole):
+        pass
+    told = vp.Program(robot, start=home)
+    chunks = list(told.chunks(tell(told)))
+    assert len(told) == 0
+    np.testing.assert_allclose(
+        chunks[-1].sample().pose[-1], whole.plan().sample().pose[-1], atol=1e-9
+    )
+    np.testing.assert_allclose(
+        chunks[-1].sample().pose[-1], robot.with_tool(tool).fk(home + 0.22), atol=1e-9
+    )
+
+
+def test_a_motion_stays_what_was_planned(tmp_path: Path) -> None:
+    robot = vp.load_robot("puma560")
+    home = np.radians([0.0, 25.0, 0.0, 15.0, 50.0, 10.0])
+    program = vp.Program(robot, start=home).movej(home + 0.1)
+    motion = program.plan()
+    program.movej(home + 0.2).movej(home + 9.0)
+    motion.save(tmp_path / "m.motion.json")
+    assert verifier.verify(tmp_path / "m.motion.json").holds

@@ -45,6 +45,13 @@ def test_a_step_ends_at_the_taught_point_and_resume_goes_on(motion, abc):
     np.testing.assert_allclose(samples.q[-1], abc["C"], atol=1e-9)
 
 
+def test_a_way_back_may_be_stopped_by_the_override(motion, abc):
+    samples = vp.simulate(
+        motion, [(1.0, "backward"), (1.2, "override", 0.0), (1.6, "override", 1.0)]
+    )
+    np.testing.assert_allclose(samples.q[-1], motion.sample(0.002).q[0], atol=1e-9)
+
+
 def test_backward_goes_back_along_the_path_to_its_start(motion, abc):
     samples = vp.simulate(motion, [(1.0, "backward")])
     assert_within(samples, motion.robot)

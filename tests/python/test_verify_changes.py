@@ -56,6 +56,17 @@ def run_on(d):
     d["pieces"][5]["timing"][1] += 1e-5
 
 
+def stop_short(d):
+    last = max(
+        piece["path"]
+        for piece in d["pieces"]
+        if np.any(np.array(d["paths"][piece["path"]]["coefficients"])[1:])
+    )
+    for piece in d["pieces"]:
+        if piece["path"] == last:
+            piece["timing"] = [0.7 * c for c in piece["timing"]]
+
+
 def lower_limit(d):
     d["robot"]["limits"]["velocity"][0] *= 0.4
 
@@ -179,6 +190,7 @@ def swap_curve_for_less(d):
         (slow, "steps between"),
         (fast, "steps between"),
         (run_on, "steps between"),
+        (stop_short, "is not run from its beginning to its end"),
         (lower_limit, "velocity limit is broken"),
         (raise_limit, "claims more jerk"),
         (narrow, "leaves its range"),

@@ -198,7 +198,8 @@ class Marcher {
     // Three samples tell quickly, and how much shorter; only the proof counts in the end.
     double ratio = 0.0;
     for (const double u : {0.5, 0.25, 0.75}) {
-      const Deviation at = deviation_at(arm_, piece, curve_, s_, angle_kept_by(options_.hold), u * h);
+      const Deviation at =
+          deviation_at(arm_, piece, curve_, s_, angle_kept_by(options_.hold), u * h);
       ratio = std::max({ratio, at.position / tolerance_.position, at.angle / tolerance_.angle});
     }
     if (!(ratio <= 1.0)) {

@@ -136,8 +136,13 @@ double largest(const ToolRate& rate) {
   return std::sqrt(most);
 }
 
+/// A rate below this [m or rad by the path's own unit] is rounding: the tool's point or its
+/// orientation stays, and no halving makes that more precise.
+constexpr double kStill = 1e-9;
+
 bool precise(const ToolRate& rate, double share) {
   const double size = largest(rate);
+  if (size <= kStill) return true;
   return rate.error <= share * size && rate.slope_error <= 10.0 * share * size;
 }
 
@@ -157,6 +162,8 @@ void append(const ForwardKinematics& arm, const JointPiece& piece, int halvings,
       append(arm, piece.part(middle, piece.length), halvings - 1, result);
       return;
     }
+    // A tool that turns on the spot has no speed to hold.
+    if (largest(rates.linear) <= kStill) rates.limits.hold_speed = false;
   }
   result.path.append(piece);
   result.rates.push_back(rates);

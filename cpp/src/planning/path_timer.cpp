@@ -152,7 +152,9 @@ bool PathTimer::holds(std::span<const TrajectoryPiece> pieces, std::size_t numbe
   if (!limits.any()) return true;
   ToolProof proof;
   proof.add(robot_, pieces, std::vector<ToolLimits>(pieces.size(), limits), 0.0);
-  return problems_of(proof.extrema()).empty();
+  const ToolExtrema& tool = proof.extrema();
+  return std::max({tool.speed.share, tool.acceleration.share, tool.angular_speed.share,
+                   tool.angular_acceleration.share}) <= kKept;
 }
 
 /// What was certain is part of what was appended since: the timing along it by those pieces.

@@ -11,6 +11,9 @@
 namespace viapoint::planning {
 namespace {
 
+/// Rounding of a speed that is kept as a limit.
+constexpr double kAbove = 1e-9;
+
 /// Value, slope and bend of Σ c_k u^k.
 std::array<double, 3> at(const std::array<double, 6>& c, double u) {
   return {c[0] + u * (c[1] + u * (c[2] + u * (c[3] + u * (c[4] + u * c[5])))),
@@ -69,7 +72,8 @@ void ProcessProof::add(const JointLimits& limits, const TrajectoryPiece& piece,
     way_ = 0.0;
   }
   const SpeedRange range = tool_speed_range(piece.timing, piece.duration, rates.linear, speed);
-  const bool held = range.least >= speed * (1.0 - kHeldWithin);
+  const bool held =
+      range.least >= speed * (1.0 - kHeldWithin) && range.most <= speed * (1.0 + kAbove);
   double way = 0.0;
   constexpr int kParts = 16;  // Simpson's rule
   for (int k = 0; k <= kParts; ++k) {

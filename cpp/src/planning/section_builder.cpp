@@ -81,7 +81,7 @@ bool SectionBuilder::round(bool corner_after) {
   const JointPath head = cut(tail_, 0.0, tail_.length() - corner.cut_before);
   JointPath rest = cut(after.path, corner.cut_after, after.path.length());
   // A process goes on through a corner, whatever that costs.
-  const bool process = leg_->options.process_speed && after.options.process_speed;
+  const bool process = leg_->tool_limits().hold_speed && after.tool_limits().hold_speed;
   if (!process && !surely_pays(corner, tail_, after.path)) {
     const double gain = gain_of(head, corner.blend, rest);
     if (gain <= 0.0) {

@@ -192,9 +192,12 @@ class StreamPlanner::Line {
   /// What is left when all motion has been handed out: outputs that change at the end, and a short
   /// rest where the program does not move at all.
   std::optional<MotionChunk> at_last() {
-    if (!ended_ || handed_out_last_ || steps_ == 0) return std::nullopt;
-    drop_passed(duration_);
-    if (handed_out_ && outputs_.empty()) return std::nullopt;
+    if (!ended_ || handed_out_last_) return std::nullopt;
+    if (steps_ > 0) drop_passed(duration_);
+    if (steps_ == 0 || (handed_out_ && outputs_.empty())) {
+      handed_out_last_ = true;  // before the end was known
+      return std::nullopt;
+    }
     std::vector<TrajectoryPiece> pieces;
     const size_t rests =
         std::max<size_t>(1, (outputs_.size() + kMaxOutputsAPiece - 1) / kMaxOutputsAPiece);

@@ -120,9 +120,13 @@ struct ControllerLoop::Impl {
     while (!job->ended()) std::this_thread::sleep_for(kCompanionPeriod);
   }
 
-  /// A jog that is under way, or wished and not begun. A drive that failed jogs no more.
+  /// A jog that is under way, or wished and not begun. A drive that failed or was released jogs no
+  /// more.
   [[nodiscard]] bool jogs() const {
-    if (channels.faulted.load(std::memory_order_acquire)) return false;
+    if (channels.faulted.load(std::memory_order_acquire) ||
+        channels.released.load(std::memory_order_acquire)) {
+      return false;
+    }
     return channels.jog.pending() || channels.jogging.load(std::memory_order_acquire);
   }
 

@@ -43,7 +43,9 @@ void CycleRunner::do_cycle() noexcept VIAPOINT_NONBLOCKING {
     refuse_next();
     return;
   }
-  if (motion_ == nullptr && !interpolator_.jogging()) begin_next();
+  // After a breach nothing new begins: what moves is brought to rest.
+  const bool is_sound = !guard_.breach().any();
+  if (motion_ == nullptr && !interpolator_.jogging() && is_sound) begin_next();
   // Read first and acted on last: a jog comes with the pause that was wished before it.
   const bool is_jog = channels_.jog.read(wished_);
   if (motion_ != nullptr) take_wish();
@@ -59,7 +61,8 @@ void CycleRunner::do_cycle() noexcept VIAPOINT_NONBLOCKING {
   const bool is_dead = status == DriveStatus::kFault || status == DriveStatus::kPowerLost;
   const bool fault = is_dead || is_at_rest;
   if (fault) interpolator_.abandon();
-  channels_.jogging.store(interpolator_.jogging(), std::memory_order_release);
+  channels_.jogging.store(interpolator_.jogging() || (off_path_ && !fault),
+                          std::memory_order_release);
   channels_.jog_block.store(interpolator_.jog_block(), std::memory_order_relaxed);
   channels_.snapshot.write(setpoint_.q, measurement_);
   record(end - begin);
@@ -98,7 +101,7 @@ void CycleRunner::fail() noexcept VIAPOINT_NONBLOCKING {
 }
 
 void CycleRunner::jog() noexcept VIAPOINT_NONBLOCKING {
-  interpolator_.jog(wished_);
+  if (!guard_.breach().any()) interpolator_.jog(wished_);
   // In this order: who sees the wish done sees the jog that it began.
   channels_.jogging.store(interpolator_.jogging(), std::memory_order_release);
   channels_.jog.done();
@@ -160,7 +163,8 @@ void CycleRunner::finish() noexcept VIAPOINT_NONBLOCKING {
   motion_->state.store(state, std::memory_order_release);
   if (!rests) return;
   // Before the motion goes back: who sees the stop's end sees that the drive is to be released.
-  if (state == RunState::kStopped && wish_.wish == Wish::kRelease) {
+  // A stop wished while the arm came to rest at its end anyway releases the drive, too.
+  if (wish_.wish == Wish::kRelease) {
     channels_.released.store(true, std::memory_order_release);
   }
   channels_.motions.give_back(motion_);

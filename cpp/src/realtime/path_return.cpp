@@ -8,8 +8,10 @@ namespace {
 
 /// A joint that moves by less than this [rad or m] stands still, as far as limits go.
 constexpr double kNoStep = 1e-12;
-/// Speeds below this share of the limits would take hours: they count as 0.
+/// Slower than this share of the limits would take hours: what is above 0 counts as this much.
 constexpr double kLeastShare = 1e-4;
+/// Of the way back: what is beyond its end by rounding.
+constexpr double kBeyond = 1e-9;
 
 }  // namespace
 
@@ -50,6 +52,11 @@ void PathReturn::replan(const AxisState& from, double share) noexcept VIAPOINT_N
     AxisLimits slower = limits;
     slower.velocity_max = share * velocity_;
     status = quickest_move(from, {1.0, 0.0, 0.0, 0.0}, slower, law);
+    if (status == MoveStatus::kSolved && law.extent().high > 1.0 + kBeyond) {
+      // Too near to slow down first: it would come out beyond the path and turn back.
+      slower.velocity_max = std::max(slower.velocity_max, from.qd);
+      status = quickest_move(from, {1.0, 0.0, 0.0, 0.0}, slower, law);
+    }
   }
   if (status != MoveStatus::kSolved) status = quickest_velocity_change(from, {}, limits, law);
   if (status != MoveStatus::kSolved) return;
@@ -63,7 +70,7 @@ void PathReturn::tick(double share, Setpoint& setpoint) noexcept VIAPOINT_NONBLO
     return t >= law_.total ? AxisState{law_.end.q, 0.0, 0.0, 0.0} : law_.at(t);
   };
   AxisState s = state_now();
-  const double wanted = share >= kLeastShare ? share : 0.0;
+  const double wanted = share > 0.0 ? std::max(share, kLeastShare) : 0.0;
   if (wanted != share_) {
     replan(s, wanted);
     share_ = wanted;

@@ -195,6 +195,7 @@ bool RateGovernor::step_back(RateState& state, const Lookahead& lookahead,
   const double undone = -state.slope / cycle_;
   double gamma = std::clamp(undone, -max_curvature_, max_curvature_);
   if (!limits_.strongest(stretch, time, gamma)) return false;
+  const double found = gamma;
   if (gamma * undone > 0.0 && std::abs(undone) <= cycles * std::abs(gamma)) {
     cycles = static_cast<int>(std::ceil(undone / gamma));
     gamma = undone / cycles;
@@ -202,13 +203,14 @@ bool RateGovernor::step_back(RateState& state, const Lookahead& lookahead,
   RateState next = state.after(cycles * cycle_, gamma);
   if (gamma * undone > 0.0 && std::abs(next.slope) <= kSameRate) next.slope = 0.0;
   next.tau = std::max(next.tau, state.tau);
-  if (gamma * undone < 0.0) {  // away from slope 0: a joint has forced it
+  const bool is_away = gamma * undone < 0.0;  // from slope 0: a joint has forced it
+  if (is_away && (next.tau > furthest || std::abs(next.slope) > max_slope_)) return false;
+  // Where a joint forces a curvature, less than what was found may be too little.
+  if (is_away || gamma != found) {
     stretch.rate = within_unit(rates_between(state, next, gamma));
     stretch.slope = hull(state.slope, next.slope);
     stretch.curvature = gamma;
-    if (next.tau > furthest || std::abs(next.slope) > max_slope_ || !limits_.kept(stretch)) {
-      return false;
-    }
+    if (!limits_.kept(stretch)) return false;
   }
   plan.step[static_cast<std::size_t>(plan.steps++)] = {gamma, cycles};
   state = next;

@@ -116,7 +116,7 @@ std::vector<LogRecord> simulate(const Trajectory& trajectory, const JointLimits&
     double cycles = static_cast<double>(k) + 1.0;
     if (record.state == RunState::kPaused) {
       cycles = next->time / seconds;
-    } else if (record.rate < 0.0) {
+    } else if (record.state == RunState::kRunning && record.rate < 0.0 && record.rate == -share) {
       cycles += record.nominal_time / (share * seconds);
       if (next != commands.end()) cycles = std::min(cycles, next->time / seconds);
     } else if (record.state == RunState::kRunning && record.rate == share) {

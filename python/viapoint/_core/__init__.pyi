@@ -756,6 +756,10 @@ class MotionProgram:
         file: str,
         line: typing.SupportsInt | typing.SupportsIndex,
     ) -> None: ...
+    def copy(self) -> MotionProgram:
+        """
+        The program as it is now.
+        """
     def save(self, path: str) -> None: ...
     def set_tolerance(
         self,

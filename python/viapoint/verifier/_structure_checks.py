@@ -12,18 +12,23 @@ from ._motion_file import MotionFile
 
 MEET = 1e-9
 """Largest gap between stretches of a leg, by its length."""
+WHOLE = 1e-8
+"""Share of a path that rounding may leave out at its ends."""
 
 
-def check_structure(motion: MotionFile, verdict: Verdict) -> None:
-    """Find what is missing, doubled or out of order."""
+def check_structure(motion: MotionFile, verdict: Verdict) -> bool:
+    """Find what is missing, doubled or out of order.
+
+    Returns
+    -------
+    fits : bool
+        The parts belong together, so that the other checks have what to look at.
+    """
     before = len(verdict.findings)
-    wrong = [
-        *_wrong_robot(motion),
-        *_wrong_order(motion),
-        *([] if motion.timed else _wrong_legs(motion)),
-    ]
-    verdict.findings += [Finding(what) for what in wrong]
+    wrong = [*_wrong_order(motion), *([] if motion.timed else _wrong_legs(motion))]
+    verdict.findings += [Finding(what) for what in [*_wrong_robot(motion), *wrong]]
     verdict.prove("legs, corners and robot", "whole", "each leg from end to end", before)
+    return not wrong
 
 
 def fingerprint(motion: MotionFile) -> str:
@@ -73,6 +78,18 @@ def _wrong_order(motion: MotionFile) -> list[str]:
     cut_off = [p for c in motion.corners for p in (*c.before, *c.after)]
     if sorted([*range(motion.path_of[-1] + 1), *cut_off]) != list(range(len(motion.paths))):
         wrong.append("a path is neither run nor cut off by one corner")
+    return wrong or _wrong_ends(motion)
+
+
+def _wrong_ends(motion: MotionFile) -> list[str]:
+    wrong = []
+    for p in [] if motion.timed else range(motion.path_of[-1] + 1):
+        pieces = np.flatnonzero(motion.path_of == p)
+        if not motion.paths[p, 1:].any():
+            continue  # a rest
+        begin, end = motion.timing[pieces[0], 0], motion.timing[pieces[-1]].sum()
+        if abs(begin) > WHOLE or abs(end - 1.0) > WHOLE:
+            wrong.append(f"path {p} is not run from its beginning to its end")
     return wrong
 
 
@@ -114,6 +131,11 @@ def _wrong_sequence(motion: MotionFile) -> list[str]:
     return []
 
 
+def _ends_its_leg(motion: MotionFile, leg: int, end: float) -> bool:
+    length = motion.legs[leg].length
+    return abs(end - length) <= MEET * length
+
+
 def _wrong_corners(motion: MotionFile) -> list[str]:
     wrong = []
     run = {s.corner for s in motion.stretches if s.corner is not None}
@@ -130,6 +152,7 @@ def _wrong_corners(motion: MotionFile) -> list[str]:
             and all(s.leg == corner.leg + 1 for s in begins)
             and bool(ends)
             and bool(begins)
+            and _ends_its_leg(motion, corner.leg, ends[-1].end)
         )
         if not whole:
             wrong.append(f"corner {k} lacks a path, or cuts off what is no part of its legs")

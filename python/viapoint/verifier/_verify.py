@@ -41,7 +41,8 @@ def verify_bytes(data: bytes) -> Verdict:
     """Verify the content of a motion file, as `verify` does."""
     motion = read(data)
     verdict = Verdict(motion.name, motion.robot, len(motion.durations), float(motion.starts[-1]))
-    check_structure(motion, verdict)
+    if not check_structure(motion, verdict):
+        return verdict
     check_joints(motion, scales_of(motion), verdict)
     check_deviation(motion, verdict)
     check_zones(motion, verdict)

@@ -44,7 +44,8 @@ class UnevenClock final : public Clock {
 };
 
 std::unique_ptr<ControllerLoop> virtual_loop(
-    LoopOptions options = {}, std::unique_ptr<Clock> clock = std::make_unique<VirtualClock>()) {
+    const LoopOptions& options = {},
+    std::unique_ptr<Clock> clock = std::make_unique<VirtualClock>()) {
   return std::make_unique<ControllerLoop>(std::make_unique<SimulatedDrive>(JointVector::Zero(2)),
                                           kLimits, options, std::move(clock));
 }

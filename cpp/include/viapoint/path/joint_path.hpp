@@ -35,9 +35,7 @@ struct ToolLimits {
   /// `speed` is to be kept wherever the limits allow, not only not to be exceeded.
   bool hold_speed = false;
 
-  [[nodiscard]] bool any() const {
-    return speed < kNone || acceleration < kNone || turns();
-  }
+  [[nodiscard]] bool any() const { return speed < kNone || acceleration < kNone || turns(); }
   [[nodiscard]] bool turns() const { return angular_speed < kNone || angular_acceleration < kNone; }
   bool operator==(const ToolLimits&) const = default;
 };

@@ -12,7 +12,9 @@ class EndedJob final : public Job {
   bool wait(double) override { return true; }
   void pause() override {}
   void resume() override {}
-  void stop() override {}
+  void step() override {}
+  void backward() override {}
+  void stop(StopCategory) override {}
   [[nodiscard]] RunState state() const override { return RunState::kFinished; }
   [[nodiscard]] double nominal_time() const override { return 1.0; }
   [[nodiscard]] double duration() const override { return 1.0; }
