@@ -49,9 +49,10 @@ TEST(ClosedForms, FindTheJointsThatMadeThePoseAmongExactBranches) {
 
 TEST(ClosedForms, SolveNearEachSingularityTo1e7) {
   // θ5 within 1e-12 … 1e-3 of alignment, the elbow stretched or folded as much, and both.
-  for (const char* name : {"puma560", "ur5e", "panda", "iiwa14"}) {
+  for (const char* name : {"puma560", "ur5e", "panda", "iiwa14", "scara", "two_link"}) {
     const RobotPtr robot = arm(name);
-    const Eigen::Index elbow = robot->joints() == 7 ? 3 : 2;
+    const bool has_wrist = robot->joints() >= 6;
+    const Eigen::Index elbow = robot->joints() == 7 ? 3 : (has_wrist ? 2 : 1);
     const Eigen::Index wrist = robot->joints() == 7 ? 5 : 4;
     std::mt19937_64 generator(92);
     for (int problem = 0; problem < 2000; ++problem) {
@@ -59,7 +60,7 @@ TEST(ClosedForms, SolveNearEachSingularityTo1e7) {
       JointVector q = random_joints(*robot, generator);
       const double offset = std::pow(10.0, -12.0 + problem % 10);
       const double aligned = std::string(name) == "panda" ? kPi / 2.0 : 0.0;
-      if (problem % 3 != 0) q[wrist] = aligned + offset;
+      if (has_wrist && problem % 3 != 0) q[wrist] = aligned + offset;
       if (problem % 3 != 1) {
         const double stretched =
             std::string(name) == "puma560" ? -kPi / 2.0 + std::atan2(0.02, 0.433) : 0.0;
@@ -199,6 +200,42 @@ TEST(ClosedForms, RefuseWhatIsOutOfReachByItsDistance) {
       }
     }
     EXPECT_GT(refused, puma ? 1900 : 500);
+  }
+}
+
+TEST(ClosedForms, RefuseSevenJointsOutOfReachByTheirDistance) {
+  // The flange beyond the stretched arm, along the line on which it points away from the shoulder:
+  // whatever the redundancy, the wrist cannot be nearer. Panda's wrist lies 88 mm beside that line.
+  struct Arm {
+    const char* name;
+    double shoulder, links, flange, beside;
+  };
+  const double panda_links = std::hypot(0.316, 0.0825) + std::hypot(0.384, 0.0825);
+  for (const Arm& of :
+       {Arm{"iiwa14", 0.36, 0.82, 0.126, 0.0}, Arm{"panda", 0.333, panda_links, 0.107, 0.088}}) {
+    const RobotPtr robot = arm(of.name);
+    const double stretched = std::sqrt(of.links * of.links - of.beside * of.beside);
+    std::mt19937_64 generator(97);
+    std::normal_distribution<double> normal;
+    for (int problem = 0; problem < 700; ++problem) {
+      SCOPED_TRACE(testing::Message() << of.name << " seed 97 problem " << problem);
+      const Eigen::Vector3d along =
+          Eigen::Vector3d(normal(generator), normal(generator), normal(generator)).normalized();
+      const double beyond = std::pow(10.0, -6.0 + problem % 7);
+      Pose pose = Pose::Identity();
+      pose.rotate(Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), along));
+      pose.rotate(Eigen::AngleAxisd(normal(generator), Eigen::Vector3d::UnitZ()));
+      pose.translation() =
+          of.shoulder * Eigen::Vector3d::UnitZ() + (stretched + beyond + of.flange) * along;
+      const double missing = std::hypot(stretched + beyond, of.beside) - of.links;
+      try {
+        (void)robot->inverse().solve_near(pose, random_joints(*robot, generator));
+        FAIL() << "solved";
+      } catch (const MotionError& error) {
+        ASSERT_EQ(error.code(), ErrorCode::kUnreachable) << error.what();
+        ASSERT_NEAR(*error.problem().value, missing, 1e-8);
+      }
+    }
   }
 }
 
