@@ -373,6 +373,8 @@ def test_a_signal_stops_the_run_on_its_path_and_keeps_its_log(tmp_path, signum):
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
+        # What runs the tests may ignore a hang-up (nohup), and its children would, too.
+        preexec_fn=lambda: signal.signal(signum, signal.SIG_DFL),
     )
     assert process.stdout is not None
     assert process.stdout.readline().strip() == "running"
