@@ -22,7 +22,7 @@ from benches.tables import Row
 
 SUBJECTS = (*core.SUBJECTS, "sample", "programs", "profiles", "paths")
 BY_THE_MILLION = ("profiles", "programs")
-PROGRAMS = 400
+PROGRAMS = 60
 
 
 def measure(subject: str, options: argparse.Namespace) -> tuple[list[Row], list[Row]]:

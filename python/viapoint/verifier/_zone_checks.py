@@ -87,7 +87,7 @@ class _Check:
         return float((worst.bound / np.array([max(c.asked, 1e-300) for c in zones])).max())
 
     def bounds(self, items: Indices, middle: Array, half: Array) -> tuple[Array, Array]:
-        """Bound what the zone limits."""
+        """Bound what the zone limits: each kind of zone in its own way."""
         raise NotImplementedError
 
     def points(self, paths: Indices, middle: Array, half: Array, tool: Array) -> Ball:
