@@ -18,6 +18,7 @@ from ._jets import (
     sine_cosine_jets,
     split_jets,
 )
+from ._strict_json import MotionFileError
 
 SERIES_TERMS = 16
 LARGEST_TURN = 10.0
@@ -231,7 +232,7 @@ def _series(x: Ball, odd: int) -> Ball:
     """Σ (-x/4)^k / (2k + odd)! for 0 <= x <= LARGEST_TURN."""
     at_middle, over = split_jets(x)
     if not (np.all(at_middle.size[0] <= LARGEST_TURN) and np.all(over.size[0] <= 4 * LARGEST_TURN)):
-        raise ValueError("an orientation spline turns by more than half a turn in one span")
+        raise MotionFileError("an orientation spline turns by more than half a turn in one span")
     y = x.scaled(-0.25)
     value = constant(Ball.exact(np.full((1, x.mid.shape[-1]), 1.0)))
     value = Ball(value.mid / factorial(2 * SERIES_TERMS + odd), value.rad)

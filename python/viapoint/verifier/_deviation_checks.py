@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from ._file_parts import TURNING, Leg
 from ._findings import Finding, Verdict
 from ._jets import largest, polynomial_jets
 from ._motion_file import MotionFile
-from ._search import Worst, prove_below
+from ._search import Bounds, Worst, prove_below
 
 JOINT_SLACK = 1e-8
 """Of joints from their line or spline, a rounding of its parts [rad, m]."""
@@ -35,30 +36,42 @@ def check_deviation(motion: MotionFile, verdict: Verdict) -> None:
         if curves:
             verdict.findings.append(Finding("a tool curve for an arm without a chain"))
         return
-    before = len(verdict.findings)
     along = Along(motion, motion.chain, curves)
-    place = prove_below(
-        along.positions, np.full(len(curves), motion.position_tolerance), along.breaks()
+    distance = _Quantity(
+        "path_deviation", "the tool leaves its curve", "distance from the curve [mm]"
     )
-    _judge(motion, curves, place, "the tool leaves its curve", motion.position_tolerance, verdict)
-    _judge_claim(motion, "path_deviation", place, motion.position_tolerance, verdict)
-    if curves:
-        verdict.prove(
-            "distance from the curve [mm]",
-            f"{1e3 * place.bound.max():.5f}",
-            f"{1e3 * motion.position_tolerance:.5f} and as claimed",
-            before,
-        )
-    before = len(verdict.findings)
+    _check_curves(motion, along, along.positions, distance, motion.position_tolerance, verdict)
     along = Along(motion, motion.chain, turns)
-    turn = prove_below(along.angles, np.full(len(turns), motion.angle_tolerance), along.breaks())
-    _judge(motion, turns, turn, "the tool turns away", motion.angle_tolerance, verdict)
-    _judge_claim(motion, "angle_deviation", turn, motion.angle_tolerance, verdict)
-    if turns:
+    angle = _Quantity("angle_deviation", "the tool turns away", "angle from the curve [mrad]")
+    _check_curves(motion, along, along.angles, angle, motion.angle_tolerance, verdict)
+
+
+@dataclass(frozen=True)
+class _Quantity:
+    """What a tool curve is held to: its claim, and what is said of it."""
+
+    claim: str
+    broken: str
+    proven: str
+
+
+def _check_curves(
+    motion: MotionFile,
+    along: Along,
+    bounds: Bounds,
+    quantity: _Quantity,
+    tolerance: float,
+    verdict: Verdict,
+) -> None:
+    before = len(verdict.findings)
+    worst = prove_below(bounds, np.full(len(along.paths), tolerance), along.breaks())
+    _judge(motion, along.paths, worst, quantity.broken, tolerance, verdict)
+    _judge_claim(motion, quantity.claim, worst, tolerance, verdict)
+    if along.paths:
         verdict.prove(
-            "angle from the curve [mrad]",
-            f"{1e3 * turn.bound.max():.5f}",
-            f"{1e3 * motion.angle_tolerance:.5f} and as claimed",
+            quantity.proven,
+            f"{1e3 * worst.bound.max():.5f}",
+            f"{1e3 * tolerance:.5f} and as claimed",
             before,
         )
 
@@ -74,6 +87,7 @@ class Along:
     """Paths beside the curves of their legs."""
 
     def __init__(self, motion: MotionFile, chain: Chain, paths: list[int]) -> None:
+        self.paths = paths
         self._motion = motion
         self._chain = chain
         self._paths = np.array(paths, dtype=np.intp)

@@ -113,6 +113,8 @@ def read(data: bytes) -> MotionFile:
         for i, leg in enumerate(items(document["legs"], "legs"))
     )
     corner_list = items(document["corners"], "corners")
+    if kind == "timed" and (legs or corner_list):
+        refuse("kind", "a timed motion has neither legs nor corners")
     stretches, paths = paths_in(document["paths"], n, len(legs), len(corner_list))
     corners = tuple(
         corner_in(c, f"corners[{i}]", len(legs), len(paths)) for i, c in enumerate(corner_list)

@@ -17,6 +17,8 @@ from ._balls import ROUNDING, TINY, WIDER, Array, Ball, Indices
 
 DEGREE = 25
 DEEPEST = 40
+MOST_OPEN = 64
+"""Parts for each polynomial that may be open at a time; those of a motion need a handful."""
 
 
 def composed(path: Array, timing: Array) -> Ball:
@@ -144,12 +146,14 @@ class Peaks:
             Which group each belongs to, and the number to tell it by.
         """
         begin, width = np.zeros(len(points)), 1.0
+        most = MOST_OPEN * (len(points) + 16)
         for depth in range(DEEPEST + 1):
             self._look(points[:, 0] - off, begin, group, row)
             self._look(points[:, -1] - off, begin + width, group, row)
             hull = points.max(axis=1) + off
             decided = hull <= self.reached[group] + self.gap
-            if depth == DEEPEST:
+            # Values far out of scale never come within the gap: work on them has an end.
+            if depth == DEEPEST or len(points) > most:
                 decided[:] = True
             np.maximum.at(self.bound, group[decided], hull[decided])
             keep = ~decided

@@ -14,6 +14,8 @@ Bounds = Callable[[Indices, Array, Array], tuple[Array, Array]]
 """Of items, middles and halves: what is never passed, and what is reached. Each (N,)."""
 
 DEEPEST = 26
+MOST_OPEN = 64
+"""Intervals of one item that may be open at a time; what holds by a hair needs a handful."""
 BATCH = 3000
 OVERHANG = 4e-9
 """How far beyond its ends a path is looked at: as far as a piece may run beyond them, and more."""
@@ -67,7 +69,10 @@ def prove_below(
         # Written so that NaN is no proof.
         good = bound <= limit
         np.maximum.at(worst.bound, items[good], bound[good])
-        lost = ~good & ((reached > limit) | (depth == DEEPEST) | ~np.isfinite(bound))
+        # A file may claim what is neither provable nor refutable: work on it has an end.
+        open_ = np.bincount(items[~good], minlength=count)[items]
+        endless = (depth == DEEPEST) | (open_ > MOST_OPEN)
+        lost = ~good & ((reached > limit) | endless | ~np.isfinite(bound))
         for k in np.flatnonzero(lost):
             if worst.proven[items[k]] or bound[k] > worst.bound[items[k]]:
                 worst.at[items[k]] = 0.5 * (low[k] + high[k])
