@@ -55,8 +55,6 @@ Course::Course(const JointPath& path, const JointLimits& limits, std::span<const
     // One that comes back to where it began, at rest at both ends.
     if (!(stretch.length > 0.0)) stretch.length = piece.coefficients.bottomRows<5>().norm();
     const double factor = stretch.length / piece.length;
-    stretch.rate_limit = piece.rate_limit * factor;
-    stretch.change_limit = piece.rate_change_limit * factor;
     if (stretch.straight) {
       const double per_scale = 1.0 / (stretch.length * piece.scale);
       const auto share = [&](const JointVector& per_limit) {
@@ -66,8 +64,8 @@ Course::Course(const JointPath& path, const JointLimits& limits, std::span<const
         }
         return worst * per_scale;
       };
-      stretch.rate_limit = std::min(stretch.rate_limit, 1.0 / share(per_velocity_));
-      stretch.change_limit = std::min(stretch.change_limit, 1.0 / share(per_acceleration_));
+      stretch.rate_limit = 1.0 / share(per_velocity_);
+      stretch.change_limit = 1.0 / share(per_acceleration_);
       stretch.jerk_limit = 1.0 / share(per_jerk_);
     }
     const double speed = start / piece.length;
@@ -88,10 +86,7 @@ JointPath Course::in_one_scale() const {
   for (const Stretch& stretch : stretches_) {
     scale /= stretch.gear;
     JointPiece piece = *stretch.geometry;
-    const double factor = scale * stretch.length / piece.length;
-    piece.length *= factor;
-    piece.rate_limit *= factor;
-    piece.rate_change_limit *= factor;
+    piece.length = scale * stretch.length;
     path.append(std::move(piece));
   }
   return path;

@@ -38,10 +38,9 @@ struct Stretch {
   const ToolRates* tool = nullptr;  ///< where the piece limits the tool
   double length = 0.0;              ///< of σ
   double gear = 1.0;                ///< σ̇ here over σ̇ of the piece before, where they meet
-  double rate_limit = 0.0;    ///< of σ̇: its own wish, and on a straight piece all joints' limits
-  double change_limit = 0.0;  ///< of |σ̈|, likewise
-  double jerk_limit = 0.0;    ///< of |σ⃛| on a straight piece
   bool straight = false;
+  /// What the joints' limits allow of σ̇, |σ̈| and |σ⃛| on a straight piece; on others not used.
+  double rate_limit = 0.0, change_limit = 0.0, jerk_limit = 0.0;
 };
 
 /// A section, from rest to rest. Path and tool rates must outlive it.

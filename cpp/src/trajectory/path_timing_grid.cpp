@@ -70,8 +70,7 @@ Sample curved_sample(const Course& course, size_t index, double s) {
   const Stretch& stretch = course.stretches()[index];
   JointRates rates;
   course.rates(index, s, rates);
-  double v = 1.0 / stretch.rate_limit, a = 1.0 / stretch.change_limit;
-  double j = 0.0, bend = 0.0, twist = 0.0, steady = kInfinite;
+  double v = 0.0, a = 0.0, j = 0.0, bend = 0.0, twist = 0.0, steady = kInfinite;
   for (size_t i = 0; i < static_cast<size_t>(course.joints()); ++i) {
     v = std::max(v, std::abs(rates.velocity[i]));
     a = std::max(a, std::abs(rates.acceleration1[i]));

@@ -53,8 +53,6 @@ Extreme most_extreme(const JointPath& path, const JointLimits& limits) {
   Extreme extreme;
   for (const JointPiece& piece : path.pieces()) {
     extreme.consider(piece.scale, "the scale of limits", &piece);
-    extreme.consider(piece.rate_limit, "the speed along the path", &piece);
-    extreme.consider(piece.rate_change_limit, "the acceleration along the path", &piece);
     extreme.consider(piece.length, "the length of path", &piece);
   }
   const JointPiece* nowhere = nullptr;

@@ -107,9 +107,8 @@ void BarrierProblem::add_node(const Cell& before, const Cell& after) {
   // A knot between pieces that differ in their limits obeys the stricter: rows of both. Otherwise
   // one will do, and best that of a straight piece.
   const bool knot = before.piece != after.piece;
-  const bool same = here.geometry->scale == next.geometry->scale &&
-                    here.geometry->rate_change_limit == next.geometry->rate_change_limit &&
-                    here.geometry->tool == next.geometry->tool;
+  const bool same =
+      here.geometry->scale == next.geometry->scale && here.geometry->tool == next.geometry->tool;
   if (!knot || !same || here.straight || !next.straight) {
     add_acceleration_rows(before.piece, before.s1, 1.0);
   }
@@ -123,10 +122,10 @@ void BarrierProblem::add_node(const Cell& before, const Cell& after) {
 
 void BarrierProblem::add_acceleration_rows(size_t stretch, double s, double gear) {
   const Stretch& here = course_->stretches()[stretch];
-  if (std::isfinite(here.change_limit)) {
+  if (here.straight) {
     acceleration_rows_.push_back({Pair::Zero(), Pair(0.5 * gear / here.change_limit, 0.0)});
+    return;
   }
-  if (here.straight) return;
   JointRates rates;
   course_->rates(stretch, s, rates);
   for (size_t i = 0; i < static_cast<size_t>(course_->joints()); i += 2) {
@@ -144,13 +143,12 @@ void BarrierProblem::add_acceleration_rows(size_t stretch, double s, double gear
 
 double BarrierProblem::rate_ceiling(size_t stretch, double s) const {
   const Stretch& here = course_->stretches()[stretch];
-  double v = 1.0 / here.rate_limit;
-  if (!here.straight) {
-    JointRates rates;
-    course_->rates(stretch, s, rates);
-    for (const double share : rates.velocity) v = std::max(v, std::abs(share));
-    if (is_held(here)) v *= kHeldRoom;
-  }
+  if (here.straight) return here.rate_limit * here.rate_limit;
+  double v = 0.0;
+  JointRates rates;
+  course_->rates(stretch, s, rates);
+  for (const double share : rates.velocity) v = std::max(v, std::abs(share));
+  if (is_held(here)) v *= kHeldRoom;
   if (here.tool != nullptr) v = std::max(v, tool_at(here, s).velocity);
   return 1.0 / (v * v);
 }
@@ -168,7 +166,7 @@ double BarrierProblem::ramp_ceiling(size_t stretch, double from, double to, bool
     JointRates rates;
     course_->rates(stretch, leaving ? from + along : to - along, rates);
     const double rate = tau * tau, change = sign * 2.0 / (3.0 * s1) * tau;
-    double v = rate / here.rate_limit, a = std::abs(change) / here.change_limit, j = 0.0;
+    double v = 0.0, a = 0.0, j = 0.0;
     for (size_t i = 0; i < static_cast<size_t>(course_->joints()); ++i) {
       v = std::max(v, std::abs(rates.velocity[i]) * rate);
       a = std::max(

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "trajectory/path_timing_tool.hpp"
 #include "viapoint/core/bernstein_bounds.hpp"
@@ -54,8 +55,6 @@ UniformCeilings uniform_ceilings(const JointPath& path, const JointLimits& limit
   ToolCeilings most;
   for (size_t k = 0; k < path.pieces().size(); ++k) {
     const JointPiece& piece = path.pieces()[k];
-    rate = std::min(rate, piece.rate_limit);
-    change = std::min(change, piece.rate_change_limit);
     if (!tool.empty() && tool[k].limits.any()) {
       const ToolCeilings here = tool_ceilings(tool[k], piece.length);
       most.velocity = std::max(most.velocity, here.velocity);
@@ -113,15 +112,13 @@ std::optional<UniformCeilings> straight_ceilings(const JointPath& path, const Jo
     const double bend = piece.coefficients.bottomRows<4>().cwiseAbs().maxCoeff();
     const JointVector turn = piece.coefficients.row(1).transpose() / piece.length - direction;
     if (!(bend <= kRounding * size * piece.length) ||
-        !(turn.cwiseAbs().maxCoeff() <= kRounding * size) || piece.scale != first.scale ||
-        piece.rate_limit != first.rate_limit ||
-        piece.rate_change_limit != first.rate_change_limit) {
+        !(turn.cwiseAbs().maxCoeff() <= kRounding * size) || piece.scale != first.scale) {
       return std::nullopt;
     }
   }
   if (!(size > 0.0)) return std::nullopt;
-  UniformCeilings ceilings{first.rate_limit, first.rate_change_limit,
-                           std::numeric_limits<double>::infinity()};
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  UniformCeilings ceilings{kInfinite, kInfinite, kInfinite};
   for (int i = 0; i < limits.joints(); ++i) {
     const double rate = std::abs(direction[i]) / first.scale;
     if (rate == 0.0) continue;

@@ -22,11 +22,8 @@ void require_valid(const JointPath& path, const JointLimits& limits) {
     if (!(piece.coefficients.bottomRows<5>().norm() > 0.0)) {
       throw MotionError(ErrorCode::kBadArgument, "A path piece moves no joint.");
     }
-    if (!(piece.scale > 0.0 && piece.scale <= 1.0) || !(piece.rate_limit > 0.0) ||
-        !(piece.rate_change_limit > 0.0)) {
-      throw MotionError(
-          ErrorCode::kBadArgument,
-          "A path piece has a scale outside (0, 1] or a ceiling that is not positive.");
+    if (!(piece.scale > 0.0 && piece.scale <= 1.0)) {
+      throw MotionError(ErrorCode::kBadArgument, "A path piece has a scale outside (0, 1].");
     }
   }
 }

@@ -52,19 +52,12 @@ struct Interval {
   }
 };
 
-/// One cell: its length, and the limit of |s̈| along it.
-struct CellSize {
-  double length = 0.0, change_limit = kInfinite;
-};
-
-/// The s̈ that take b through the cell to a b of at most `to.most`.
-Interval changes(const Place& from, const Place& to, const CellSize& cell, int joints, double b) {
+/// The s̈ that take b through a cell of this length to a b of at most `to.most`.
+Interval changes(const Place& from, const Place& to, double length, int joints, double b) {
   Interval interval;
-  const double twice = 2.0 * cell.length;
+  const double twice = 2.0 * length;
   interval.raise(-b / twice, -1.0 / twice);
   interval.lower((to.most - b) / twice, -1.0 / twice);
-  interval.raise(-cell.change_limit, 0.0);
-  interval.lower(cell.change_limit, 0.0);
   for (size_t i = 0; i < static_cast<size_t>(joints); ++i) {
     interval.add(b, from.bend[i], from.slope[i]);
     interval.add(b, to.bend[i], to.slope[i] + twice * to.bend[i]);
@@ -74,14 +67,14 @@ Interval changes(const Place& from, const Place& to, const CellSize& cell, int j
 
 /// The largest b at `from` that can be driven through the cell. The width of the interval of s̈ is
 /// concave in b, at least zero at b = 0 and made of lines: Newton's method from above ends on one.
-double most_before(const Place& from, const Place& to, const CellSize& cell, int joints) {
+double most_before(const Place& from, const Place& to, double length, int joints) {
   constexpr int kMostSteps = 100;
   double b = from.ceiling;
   for (size_t i = 0; i < static_cast<size_t>(joints); ++i) {
     if (from.slope[i] == 0.0) b = std::min(b, 1.0 / std::abs(from.bend[i]));
   }
   for (int step = 0; step < kMostSteps; ++step) {
-    const Interval interval = changes(from, to, cell, joints, b);
+    const Interval interval = changes(from, to, length, joints, b);
     const double width = interval.high - interval.low;
     if (width >= 0.0) return b;
     const double next = b - width / (interval.high_slope - interval.low_slope);
@@ -118,15 +111,12 @@ class Reachability {
   [[nodiscard]] double s_of(const Stretch& stretch, int i) const {
     return stretch.length * i / cells_;
   }
-  [[nodiscard]] CellSize size_of(const Stretch& stretch) const {
-    return {stretch.length / cells_, stretch.change_limit};
-  }
 
   [[nodiscard]] Place place(size_t k, int i) const {
     const Stretch& stretch = course_.stretches()[k];
     JointRates rates;
     course_.rates(k, s_of(stretch, i), rates);
-    double rate = 1.0 / stretch.rate_limit;
+    double rate = 0.0;
     for (const double share : rates.velocity) rate = std::max(rate, std::abs(share));
     return {rates.acceleration2, rates.acceleration1, 1.0 / (rate * rate), 0.0};
   }
@@ -138,7 +128,7 @@ class Reachability {
       at(k, cells_).most = std::min(most, at(k, cells_).ceiling);
       for (int i = cells_ - 1; i >= 0; --i) {
         at(k, i).most =
-            most_before(at(k, i), at(k, i + 1), size_of(stretches[k]), course_.joints());
+            most_before(at(k, i), at(k, i + 1), stretches[k].length / cells_, course_.joints());
       }
       most = at(k, 0).most / (stretches[k].gear * stretches[k].gear);
     }
@@ -150,16 +140,16 @@ class Reachability {
     double b = 0.0;
     for (size_t k = 0; k < course_.stretches().size(); ++k) {
       const Stretch& stretch = course_.stretches()[k];
-      const CellSize cell = size_of(stretch);
+      const double length = stretch.length / cells_;
       b = std::min(b * stretch.gear * stretch.gear, at(k, 0).most);
       for (int i = 0; i < cells_; ++i) {
         const Place& to = at(k, i + 1);
-        const double change = changes(at(k, i), to, cell, course_.joints(), b).high;
-        const double next = std::clamp(b + 2.0 * cell.length * change, 0.0, to.most);
+        const double change = changes(at(k, i), to, length, course_.joints(), b).high;
+        const double next = std::clamp(b + 2.0 * length * change, 0.0, to.most);
         const double start = std::sqrt(b), end = std::sqrt(next);
-        const RateState from{s_of(stretch, i), start, 0.5 * (next - b) / cell.length};
+        const RateState from{s_of(stretch, i), start, 0.5 * (next - b) / length};
         spans.push_back(TimedSpan::constant_jerk(k, stretch.length, from, 0.0, s_of(stretch, i + 1),
-                                                 2.0 * cell.length / (start + end)));
+                                                 2.0 * length / (start + end)));
         b = next;
       }
     }

@@ -90,7 +90,6 @@ TEST(JointPiece, PartIsTheSameCurveAndKeepsWhatThePieceCarries) {
     JointPiece piece = JointPiece::hermite(random_point(random, 6), random_point(random, 6), 1.3);
     piece.move = 7;
     piece.scale = 0.25;
-    piece.rate_limit = 0.4;
     std::uniform_real_distribution<double> uniform(0.0, 1.3);
     double s0 = uniform(random);
     double s1 = uniform(random);
@@ -103,7 +102,6 @@ TEST(JointPiece, PartIsTheSameCurveAndKeepsWhatThePieceCarries) {
     const JointPiece part = piece.part(s0, s1);
     ASSERT_EQ(part.move, 7);
     ASSERT_EQ(part.scale, 0.25);
-    ASSERT_EQ(part.rate_limit, 0.4);
     ASSERT_DOUBLE_EQ(part.length, s1 - s0);
     for (const double share : {0.0, 0.3, 1.0}) {
       const PathPoint of_part = part.at(share * part.length);

@@ -178,7 +178,7 @@ TEST(TimeParameterizer, KeepsLimitsOnRandomQuinticSplines) {
   }
 }
 
-TEST(TimeParameterizer, KeepsRateCeilingsAndScalesOfPieces) {
+TEST(TimeParameterizer, KeepsScalesOfPieces) {
   for (std::uint64_t seed = 0; seed < problems<std::uint64_t>(300); ++seed) {
     SCOPED_TRACE(::testing::Message() << "seed " << seed);
     Random random(seed);
@@ -186,8 +186,6 @@ TEST(TimeParameterizer, KeepsRateCeilingsAndScalesOfPieces) {
     JointPath path;
     for (JointPiece piece : plain.pieces()) {
       piece.scale = uniform(random, 0.1, 1.0);
-      piece.rate_limit = uniform(random, 0.2, 2.0);
-      piece.rate_change_limit = uniform(random, 2.0, 20.0);
       path.append(piece);
     }
     const JointLimits limits = arm_limits();
@@ -199,15 +197,6 @@ TEST(TimeParameterizer, KeepsRateCeilingsAndScalesOfPieces) {
       while (piece.path[0][0] != path.pieces()[index].coefficients(0, 0)) ++index;
       const JointPiece& geometry = path.pieces()[index];
       ASSERT_LE(sampled_share(std::vector{piece}, limits, 20), geometry.scale * kShare);
-      const auto& c = piece.timing;
-      for (int k = 0; k <= 20; ++k) {
-        const double x = k / 20.0;
-        const double u1 = c[1] + x * (2 * c[2] + x * (3 * c[3] + x * (4 * c[4] + x * 5 * c[5])));
-        const double u2 = 2 * c[2] + x * (6 * c[3] + x * (12 * c[4] + x * 20 * c[5]));
-        ASSERT_LE(u1 * geometry.length / piece.duration, geometry.rate_limit * kShare);
-        ASSERT_LE(std::abs(u2) * geometry.length / piece.duration / piece.duration,
-                  geometry.rate_change_limit * kShare);
-      }
     }
   }
 }

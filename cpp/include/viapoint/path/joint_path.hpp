@@ -46,9 +46,6 @@ struct JointPiece {
   double length = 0.0;  ///< of the parameter s, > 0 (any unit; consistent along one section)
   PieceKind kind = PieceKind::kJointLine;
   int move = 0;  ///< the program step that this piece serves (a blend: the step it leaves)
-  /// Ceilings on ds/dt and |d²s/dt²| from tool speed and acceleration wishes; infinite without.
-  double rate_limit = std::numeric_limits<double>::infinity();
-  double rate_change_limit = std::numeric_limits<double>::infinity();
   /// Share of all joint limits this piece may use, in (0, 1] (velocity; acceleration and jerk keep
   /// their limits times the same share).
   double scale = 1.0;

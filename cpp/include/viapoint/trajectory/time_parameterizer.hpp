@@ -16,8 +16,7 @@ namespace viapoint {
 
 /// @param path   one section, C² inside but for a factor on s where pieces meet, at rest at both
 ///               ends
-/// @param limits velocity, acceleration and jerk; piece.scale, rate_limit and rate_change_limit
-///               apply on top
+/// @param limits velocity, acceleration and jerk; piece.scale applies on top
 /// @returns pieces from rest to rest with every share <= 1 + 1e-9, proven by certify(); each piece
 ///          lies within one path piece. Always succeeds for a valid path: its last resort is a
 ///          uniform stretch of time, which keeps the geometry.
