@@ -1,4 +1,7 @@
 // Arrays across the border, poses and atomic files.
+#include <string_view>
+#include <variant>
+
 #include "bindings.hpp"
 #include "viapoint/core/atomic_file.hpp"
 
@@ -37,9 +40,13 @@ void bind_core(py::module_& m) {
       "The pose with its rotation made exact, and the largest element by which it was changed.");
   m.def(
       "write_file_atomically",
-      [](const std::string& path, const std::string& content) {
+      [](const std::string& path, const std::variant<py::bytes, std::string>& content) {
+        const auto* bytes = std::get_if<py::bytes>(&content);
+        // Neither can change while the writer holds it: both are immutable in Python, or a copy.
+        const std::string_view view =
+            bytes != nullptr ? std::string_view(*bytes) : std::get<std::string>(content);
         const py::gil_scoped_release release;
-        write_file_atomically(path, content);
+        write_file_atomically(path, view);
       },
       py::arg("path"), py::arg("content"),
       "Writes a whole file: a crash leaves the old content or the new, never a part.");

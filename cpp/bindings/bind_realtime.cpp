@@ -150,10 +150,73 @@ std::vector<std::string> run_states() {
   return states;
 }
 
+template <typename T>
+py::array_t<T> column_named(const Columns& columns, const std::string& name,
+                            std::vector<py::ssize_t> shape) {
+  if (!columns.contains(name)) {
+    throw MotionError(ErrorCode::kBadArgument, "The log lacks the column \"" + name + "\".");
+  }
+  const auto column =
+      py::array_t<T, py::array::c_style | py::array::forcecast>::ensure(columns[name.c_str()]);
+  if (!column ||
+      !std::equal(column.shape(), column.shape() + column.ndim(), shape.begin(), shape.end())) {
+    throw MotionError(ErrorCode::kBadArgument,
+                      "The log's column \"" + name + "\" does not fit the others in shape.");
+  }
+  return column;
+}
+
+/// The opposite of columns_of: a log that was read from a file.
+LogHandle log_of(const Columns& columns) {
+  const auto q = py::array::ensure(columns.contains("q") ? py::object(columns["q"]) : py::none());
+  if (!q || q.ndim() != 2 || q.shape(1) < 1 || q.shape(1) > kMaxJoints) {
+    throw MotionError(ErrorCode::kBadArgument, "The log's column \"q\" must be (k, n).");
+  }
+  const py::ssize_t count = q.shape(0);
+  const py::ssize_t joints = q.shape(1);
+  LogHandle log{std::vector<LogRecord>(static_cast<size_t>(count)), static_cast<int>(joints)};
+  const auto fill = [&]<typename T>(const std::string& name, T LogRecord::* member) {
+    const py::array_t<T> values = column_named<T>(columns, name, {count});
+    for (size_t k = 0; k < log.records.size(); ++k) log.records[k].*member = values.data()[k];
+  };
+  fill("cycle", &LogRecord::cycle);
+  fill("stamp", &LogRecord::stamp);
+  fill("latency", &LogRecord::latency);
+  fill("compute", &LogRecord::compute);
+  fill("nominal_time", &LogRecord::nominal_time);
+  fill("rate", &LogRecord::rate);
+  fill("move", &LogRecord::move);
+  fill("outputs", &LogRecord::outputs);
+  const py::array_t<std::uint8_t> states = column_named<std::uint8_t>(columns, "state", {count});
+  for (size_t k = 0; k < log.records.size(); ++k) {
+    if (states.data()[k] > static_cast<std::uint8_t>(RunState::kReturning)) {
+      throw MotionError(ErrorCode::kBadArgument, "The log's column \"state\" holds no state.");
+    }
+    log.records[k].state = static_cast<RunState>(states.data()[k]);
+  }
+  const auto fill_rows = [&](const std::string& name, JointVector LogRecord::* member) {
+    const py::array_t<double> values = column_named<double>(columns, name, {count, joints});
+    for (size_t k = 0; k < log.records.size(); ++k) {
+      const Eigen::Map<const Eigen::VectorXd> row(
+          values.data() + static_cast<py::ssize_t>(k) * joints, joints);
+      // As rows() tells a record without a value.
+      if (!row.array().isNaN().all()) log.records[k].*member = row;
+    }
+  };
+  fill_rows("q", &LogRecord::q);
+  fill_rows("qd", &LogRecord::qd);
+  fill_rows("qdd", &LogRecord::qdd);
+  fill_rows("qddd", &LogRecord::qddd);
+  fill_rows("measured", &LogRecord::measured);
+  return log;
+}
+
 void bind_log(py::module_& m) {
   py::class_<LogHandle>(m, "Log", "Every cycle of a run as it was executed.")
       .def("__len__", [](const LogHandle& log) { return log.records.size(); })
       .def("columns", &columns_of, "A dict of arrays, one row a cycle.")
+      .def_static("of_columns", &log_of, py::arg("columns"),
+                  "A log of what columns() returned, one row a cycle.")
       .def(
           "head",
           [](const LogHandle& log, size_t count) {

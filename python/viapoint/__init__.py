@@ -33,6 +33,7 @@ from ._core import (
 from ._curve_fit import CurveFit, fit_curve
 from ._job import Job, RunReport
 from ._knots import insert_knots
+from ._log_files import load_log
 from ._motion import Motion
 from ._points import PointList
 from ._program import Program
@@ -79,6 +80,7 @@ __all__ = [
     "insert_knots",
     "joint_deviation",
     "joint_robot",
+    "load_log",
     "load_robot",
     "mm",
     "profile",

@@ -72,10 +72,9 @@ def write_log(job: Job, folder: Path, stem: str) -> Iterator[Path]:
     with writing(folder):
         folder.mkdir(parents=True, exist_ok=True)
     log = job.log
-    log.save_csv(folder / f"{stem}.csv")
-    yield folder / f"{stem}.csv"
-    log.save_npz(folder / f"{stem}.npz")
-    yield folder / f"{stem}.npz"
+    for ending in ("csv", "npz"):
+        log.save(folder / f"{stem}.{ending}")
+        yield folder / f"{stem}.{ending}"
 
 
 def write_run_pictures(job: Job, folder: Path, stem: str) -> Iterator[Path]:

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arguments import Vector, file_name, writing
+from ._arguments import Vector
+from ._log_files import save_log
 from ._motion import Motion
 from ._robot import Robot
 from ._samples import Samples
@@ -101,26 +102,23 @@ class RunLog:
             **core.columns(), robot=motion.robot, period=period, core=core, tools=motion.tools
         )
 
-    def save_npz(self, path: str | os.PathLike[str]) -> None:
-        """Write the arrays by their names into a numpy file.
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the log; `load_log` reads it back to the last bit.
+
+        The file is written aside and renamed: a reader finds the old one or the new one.
+
+        Parameters
+        ----------
+        path : str or path
+            Ends in ``.npz``: the arrays by their names, for numpy; ``.csv``: one line a cycle, as
+            ``viapoint-controller --log`` writes it; or ``.mcap``: for Foxglove and PlotJuggler, by
+            the package ``mcap`` (``pip install viapoint[mcap]``).
 
         Raises
         ------
+        BadArgumentError
+            Another ending.
         FileError
-            With the path and the system's reason.
+            With the path and the system's reason; or the package ``mcap`` is not installed.
         """
-        columns = {f.name: getattr(self, f.name) for f in fields(self) if f.repr}
-        with writing(path):
-            np.savez_compressed(file_name(path), **columns)
-
-    def save_csv(self, path: str | os.PathLike[str]) -> None:
-        """Write one line a cycle, as ``viapoint-controller --log`` does.
-
-        Numbers read back to the last bit.
-
-        Raises
-        ------
-        FileError
-            With the path and the system's reason.
-        """
-        self.core.save_csv(file_name(path))
+        save_log(self, path)

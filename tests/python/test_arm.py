@@ -251,22 +251,6 @@ def test_a_closed_arm_refuses(short):
         arm.run(short)
 
 
-def test_the_log_goes_into_files(short, tmp_path):
-    with vp.connect("sim://puma560", start=short.start) as arm:
-        log = arm.run(short).log
-    log.save_npz(tmp_path / "log.npz")
-    log.save_csv(tmp_path / "log.csv")
-    with np.load(tmp_path / "log.npz") as arrays:
-        np.testing.assert_array_equal(arrays["q"], log.q)
-        np.testing.assert_array_equal(arrays["stamp"], log.stamp)
-    lines = (tmp_path / "log.csv").read_text(encoding="ascii").splitlines()
-    assert len(lines) == len(log) + 1
-    header = lines[0].split(",")
-    first = header.index("q1")
-    rows = [list(map(float, row.split(",")[first : first + 6])) for row in lines[1:]]
-    np.testing.assert_array_equal(rows, log.q)
-
-
 def test_latencies_are_measured(short):
     with vp.connect("sim://puma560", start=short.start) as arm:
         job = arm.run(short)

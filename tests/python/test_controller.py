@@ -51,7 +51,7 @@ def test_the_setpoints_are_the_same_to_the_last_bit(controller, puma, abc, kind,
     assert done.returncode == 0, done.stderr
     with vp.connect("sim://puma560", start=abc["A"]) as arm:
         here = arm.run(program).log
-    here.save_csv(tmp_path / "here.csv")
+    here.save(tmp_path / "here.csv")
     columns = [f"{name}{i}" for name in ("q", "qd", "qdd", "qddd") for i in range(1, 7)]
     columns += ["cycle", "nominal_time", "rate", "move", "outputs"]
     there, ours = (_columns(file, columns) for file in (log, tmp_path / "here.csv"))

@@ -249,14 +249,6 @@ def test_a_picture_into_no_folder_is_refused(motion, tmp_path):
         motion.plot(tmp_path / "no_such_folder" / "x.png")
 
 
-def test_a_log_into_no_folder_is_refused(short, tmp_path):
-    with vp.connect("sim://puma560", start=short.start) as arm:
-        log = arm.run(short).log
-    for save in (log.save_npz, log.save_csv):
-        with pytest.raises(errors.FileError, match="no_such_folder"):
-            save(tmp_path / "no_such_folder" / "log")
-
-
 def test_no_instants_are_refused(motion):
     with pytest.raises(errors.BadArgumentError, match="times is empty"):
         motion.at([])

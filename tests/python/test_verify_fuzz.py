@@ -87,7 +87,7 @@ def mutated_fields(document, rng):
 def change_member(node, key, other, rng):
     kind = rng.integers(5)
     value = node[key]
-    is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
+    is_number = isinstance(value, (int, float)) and abs(value) < 2**60 and value is not True
     if kind == 0:
         node[key] = copy.deepcopy(ODD[int(rng.integers(len(ODD)))])
     elif kind == 1 and is_number:

@@ -1192,6 +1192,11 @@ class Log:
     """
     Every cycle of a run as it was executed.
     """
+    @staticmethod
+    def of_columns(columns: dict[str, numpy.ndarray]) -> Log:
+        """
+        A log of what columns() returned, one row a cycle.
+        """
     def __len__(self) -> int: ...
     def columns(self) -> dict[str, numpy.ndarray]:
         """
@@ -1481,7 +1486,7 @@ def wanted_legs(robot: RobotModel, program: MotionProgram) -> list[WantedLeg]:
     What a program asks of every move, in order; raises the first error of its report.
     """
 
-def write_file_atomically(path: str, content: str) -> None:
+def write_file_atomically(path: str, content: bytes | str) -> None:
     """
     Writes a whole file: a crash leaves the old content or the new, never a part.
     """

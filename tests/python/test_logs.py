@@ -1,0 +1,194 @@
+"""Logs into files and back: to the last bit, and into what other tools read."""
+
+import contextlib
+import json
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import viapoint as vp
+from viapoint import _core, errors
+from viapoint._log_files import ROWS, SCALARS
+from viapoint._log_mcap import TOPICS, quaternion
+
+reader = pytest.importorskip("mcap.reader")
+
+
+@pytest.fixture(scope="module")
+def log(puma, abc):
+    """A run with a pause, outputs and two tools, in virtual time: nothing was measured."""
+    tool = np.eye(4)
+    tool[2, 3] = 0.1
+    program = vp.Program(puma, start=abc["A"]).movej(abc["A"] + 0.1).set_do(63, True)
+    program.set_do(2, True).set_tool(tool).movej(abc["A"]).set_do(2, False)
+    motion = program.plan()
+    core = _core.simulate(motion._core, [(0.1, "pause", []), (0.3, "resume", [])], 0.002)
+    return vp.RunLog.of(core, motion, 0.002)
+
+
+@pytest.fixture(scope="module")
+def real(puma, abc):
+    """A run on the simulated drive: every cycle was measured."""
+    program = vp.Program(puma, start=abc["A"]).movej(abc["A"] + 0.05)
+    with vp.connect("sim://puma560", start=abc["A"]) as arm:
+        return arm.run(program).log
+
+
+def assert_same(read, log):
+    for key in (*SCALARS, *ROWS):
+        np.testing.assert_array_equal(getattr(read, key), getattr(log, key), err_msg=key)
+        assert getattr(read, key).dtype == getattr(log, key).dtype
+    assert read.period == log.period
+    np.testing.assert_array_equal(read.samples.t, log.samples.t)
+
+
+@pytest.mark.parametrize("ending", ["npz", "mcap", "csv"])
+def test_a_log_reads_back_to_the_last_bit(log, real, puma, tmp_path, ending):
+    for name, kept in (("virtual", log), ("real", real)):
+        path = tmp_path / f"{name}.{ending}"
+        kept.save(path)
+        read = vp.load_log(path, puma if ending == "csv" else None)
+        assert_same(read, kept)
+        assert read.robot.fingerprint == puma.fingerprint
+        again = tmp_path / f"{name}.again.csv"
+        read.save(again)
+        kept.save(tmp_path / f"{name}.csv")
+        assert again.read_bytes() == (tmp_path / f"{name}.csv").read_bytes()
+
+
+@pytest.mark.parametrize("ending", ["npz", "mcap"])
+def test_a_log_holds_its_robot_and_tools(log, tmp_path, ending):
+    log.save(tmp_path / f"x.{ending}")
+    read = vp.load_log(tmp_path / f"x.{ending}")
+    np.testing.assert_array_equal(read.samples.pose, log.samples.pose)
+    own = vp.joint_robot(2, velocity=1, acceleration=5, jerk=50)
+    samples = vp.Program(own, start=[0, 0]).movej([0.1, 0]).plan()
+    core = _core.simulate(samples._core, [], 0.004)
+    vp.RunLog.of(core, samples, 0.004).save(tmp_path / f"own.{ending}")
+    assert vp.load_log(tmp_path / f"own.{ending}").robot.fingerprint == own.fingerprint
+
+
+def test_an_mcap_is_what_its_own_reader_and_its_schemas_say(log, tmp_path):
+    log.save(tmp_path / "x.mcap")
+    kinds = {"number": (int, float), "integer": int, "string": str, "object": dict, "array": list}
+
+    def check(value, schema, place):
+        if value is None:
+            assert place.startswith("/measured")  # nothing was measured
+            return
+        assert isinstance(value, kinds[schema["type"]]), place
+        for member, of in schema.get("properties", {}).items():
+            check(value[member], of, f"{place}.{member}")
+        for i, item in enumerate(value if isinstance(value, list) else []):
+            check(item, schema["items"], f"{place}[{i}]")
+
+    counts = dict.fromkeys(TOPICS, 0)
+    with (tmp_path / "x.mcap").open("rb") as file:
+        for schema, channel, message in reader.make_reader(file).iter_messages():
+            assert (schema.name, schema.encoding) == (TOPICS[channel.topic][0], "jsonschema")
+            assert channel.message_encoding == "json"
+            content = json.loads(message.data)
+            check(content, json.loads(schema.data), channel.topic)
+            stamp = content["timestamp"]
+            assert stamp["sec"] * 10**9 + stamp["nsec"] == message.log_time
+            counts[channel.topic] += 1
+    events = counts.pop("/events")
+    assert set(counts.values()) == {len(log)}
+    assert events >= 8  # states, moves and outputs
+
+
+def test_events_tell_every_change_in_its_cycle(log, tmp_path):
+    log.save(tmp_path / "x.mcap")
+    with (tmp_path / "x.mcap").open("rb") as file:
+        told = [
+            (message.sequence, json.loads(message.data)["message"])
+            for _, _, message in reader.make_reader(file).iter_messages(topics="/events")
+        ]
+    paused = int(np.flatnonzero(log.state == log.STATES.index("paused"))[0])
+    on = int(np.flatnonzero(log.outputs & np.uint64(4))[0])
+    assert (paused, "state: paused") in told
+    assert (on, "output 2: on") in told
+    assert (on, "output 63: on") in told
+    assert any(text == "output 2: off" for _, text in told)
+
+
+def test_the_tools_pose_is_there_as_a_quaternion(log, tmp_path):
+    rng = np.random.default_rng(1)
+    for _ in range(1000):
+        q = rng.normal(size=4)
+        q *= rng.choice([1.0, 1e-9], size=4)  # half turns and near ones, too
+        w, x, y, z = q / np.linalg.norm(q)
+        rotation = np.array(
+            [
+                [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+                [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+                [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+            ]
+        )
+        found = quaternion(rotation)
+        assert abs(w * found["w"] + x * found["x"] + y * found["y"] + z * found["z"]) > 1 - 1e-12
+    log.save(tmp_path / "x.mcap")
+    with (tmp_path / "x.mcap").open("rb") as file:
+        last = [m for _, _, m in reader.make_reader(file).iter_messages(topics="/tool")][-1]
+    place = json.loads(last.data)["pose"]["position"]
+    np.testing.assert_array_equal([place[k] for k in "xyz"], log.samples.pose[-1, :3, 3])
+
+
+@pytest.mark.parametrize("name", ["log", "log.txt", "log.npz.gz"])
+def test_a_log_of_no_known_format_is_refused(log, tmp_path, name):
+    for call in (log.save, vp.load_log):
+        with pytest.raises(errors.BadArgumentError, match="ends in"):
+            call(tmp_path / name)
+
+
+@pytest.mark.parametrize("ending", ["npz", "mcap", "csv"])
+def test_a_log_that_is_not_there_or_cannot_be_written_is_refused(log, puma, tmp_path, ending):
+    with pytest.raises(errors.FileError, match="no_such_folder"):
+        log.save(tmp_path / "no_such_folder" / f"x.{ending}")
+    with pytest.raises(errors.FileError, match=r"no log .*nothing"):
+        vp.load_log(tmp_path / f"nothing.{ending}", puma)
+
+
+def test_a_csv_without_its_robot_and_a_log_of_another_are_refused(log, tmp_path):
+    log.save(tmp_path / "x.csv")
+    with pytest.raises(errors.BadArgumentError, match="which arm moved"):
+        vp.load_log(tmp_path / "x.csv")
+    with pytest.raises(errors.BadArgumentError, match="holds 6 joints"):
+        vp.load_log(tmp_path / "x.csv", vp.load_robot("scara"))
+
+
+@pytest.mark.parametrize("ending", ["npz", "mcap", "csv"])
+def test_a_log_that_is_cut_short_or_damaged_is_refused_by_name(log, puma, tmp_path, ending):
+    path = tmp_path / f"x.{ending}"
+    log.save(path)
+    data = path.read_bytes()
+    rng = np.random.default_rng(7)
+    for _ in range(60):
+        broken = bytearray(data)
+        if rng.random() < 0.3:
+            del broken[int(rng.integers(len(data) - 1)) :]
+        else:
+            for at in rng.integers(len(data), size=3):
+                broken[int(at)] ^= int(rng.integers(1, 256))
+        path.write_bytes(broken)
+        with contextlib.suppress(errors.BadProgramError, errors.BadArgumentError):
+            vp.load_log(path, puma)
+
+
+def test_without_mcap_its_installation_is_the_way_out(tmp_path):
+    code = (
+        "import sys; sys.modules['mcap'] = None\n"
+        "import viapoint as vp\n"
+        "robot = vp.load_robot('puma560')\n"
+        "with vp.connect('sim://puma560', start=[0, 0, 0, 0, 0.5, 0]) as arm:\n"
+        "    program = vp.Program(robot, start=arm.setpoint).movej([0, 0, 0, 0, 0.51, 0])\n"
+        "    log = arm.run(program).log\n"
+        "try:\n    log.save('x.mcap')\n"
+        "except vp.errors.FileError as error:\n    print(error.ways_out[0])\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True
+    )
+    assert "pip install viapoint[mcap]" in done.stdout
