@@ -119,7 +119,7 @@ void BarrierProblem::assemble_straight(size_t index, const Four& x, double weigh
 
 void BarrierProblem::assemble_curved(const CellRows& cell, const Four& x, double weight,
                                      double curvature, CellTerms& terms) {
-  const size_t pairs = (cell.end - cell.begin) / kCurvedPlaces.size();
+  const size_t pairs = cell.pairs();
   size_t row = cell.begin;
   for (const Place& place : kCurvedPlaces) {
     const double b = dot(place.value, x), slope = dot(place.slope, x), bend = dot(place.bend, x);
@@ -163,6 +163,33 @@ void BarrierProblem::assemble_curved(const CellRows& cell, const Four& x, double
     terms.add_symmetric(place.slope, ms);
     terms.add_symmetric(place.bend, mk);
   }
+  // Acceleration in the middle.
+  const double per_room = 1.0 / cell.factor.acceleration;
+  const double b = dot(kMiddle.value, x), slope = dot(kMiddle.slope, x);
+  Pair gb = Pair::Zero(), gs = gb, hbb = gb, hbs = gb, hss = gb;
+  for (size_t r = cell.middle; r < cell.middle + pairs; ++r) {
+    const Pair yb = per_room * middle_rows_[r].b, ys = per_room * middle_rows_[r].slope;
+    const Pair y = b * yb + slope * ys;
+    const Pair inverse = 1.0 / (1.0 - y * y);
+    middle_use_[r] = {y, inverse};
+    const Pair first = 2.0 * y * inverse, second = 2.0 * (1.0 + y * y) * inverse * inverse;
+    gb += first * yb;
+    gs += first * ys;
+    hbb += second * yb * yb;
+    hbs += second * yb * ys;
+    hss += second * ys * ys;
+  }
+  const double bb = 0.5 * curvature * hbb.sum(), bs = curvature * hbs.sum();
+  const double ss = 0.5 * curvature * hss.sum();
+  const double wb = weight * gb.sum(), ws = weight * gs.sum();
+  Four mb, ms;
+  for (size_t i = 0; i < 4; ++i) {
+    mb[i] = bb * kMiddle.value[i] + bs * kMiddle.slope[i];
+    ms[i] = ss * kMiddle.slope[i];
+    terms.gradient[i] += wb * kMiddle.value[i] + ws * kMiddle.slope[i];
+  }
+  terms.add_symmetric(kMiddle.value, mb);
+  terms.add_symmetric(kMiddle.slope, ms);
 }
 
 void BarrierProblem::assemble_node(size_t k, const NodeRate& rate, double weight, double curvature,
@@ -262,7 +289,7 @@ double BarrierProblem::largest_step(const SquareRate& rate, const SquareRate& st
       take(kStraightPlaces.size(), ys * dot(kMiddle.slope, dx), 0.0);
       continue;
     }
-    const size_t pairs = (cell.end - cell.begin) / kCurvedPlaces.size();
+    const size_t pairs = cell.pairs();
     size_t row = cell.begin;
     for (const Place& place : kCurvedPlaces) {
       const double at = dot(place.value, x), dat = dot(place.value, dx);
@@ -274,6 +301,12 @@ double BarrierProblem::largest_step(const SquareRate& rate, const SquareRate& st
         const JerkRows& rows = jerk_rows_[row];
         consider(jerk_use_[row], change * rows.b + slope * rows.slope + bend * rows.bend, room);
       }
+    }
+    const double per_room_here = 1.0 / cell.factor.acceleration;
+    const double change = per_room_here * dot(kMiddle.value, dx);
+    const double slope = per_room_here * dot(kMiddle.slope, dx);
+    for (size_t r = cell.middle; r < cell.middle + pairs; ++r) {
+      consider(middle_use_[r], change * middle_rows_[r].b + slope * middle_rows_[r].slope, 0.0);
     }
   }
   worst = std::max(worst, worst_pair.maxCoeff());

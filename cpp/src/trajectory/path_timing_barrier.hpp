@@ -103,7 +103,8 @@ class BarrierProblem {
     bool held = false;  ///< the tool's speed is to be kept there
     /// Rows of a straight cell, which has no others: of jerk by h² b'', of acceleration by h b'.
     double straight_jerk = 0.0, straight_acceleration = 0.0;
-    size_t begin = 0, end = 0;  ///< rows of all places
+    size_t begin = 0, end = 0;  ///< rows of jerk at all places
+    size_t middle = 0;          ///< the first row of acceleration in the middle
     size_t first_cone = 0, last_cone = 0;
     Shares factor{1.0, 1.0, 1.0};  ///< on the limits
 
@@ -111,6 +112,8 @@ class BarrierProblem {
       return ceiling[inner] * factor.velocity * factor.velocity;
     }
     [[nodiscard]] bool straight() const { return straight_jerk > 0.0; }
+    /// Pairs of rows at one place.
+    [[nodiscard]] size_t pairs() const { return (end - begin) / kCurvedPlaces.size(); }
     [[nodiscard]] Four numbers(const NodeRate& from, const NodeRate& to) const {
       return {gear * gear * from.value, length * gear * from.slope, to.value, length * to.slope};
     }
@@ -150,8 +153,9 @@ class BarrierProblem {
   std::vector<ConeRow> cones_;
   std::vector<CellCone> cell_cones_;
   std::vector<JerkRows> jerk_rows_;
-  std::vector<Use> acceleration_use_, jerk_use_;  ///< of the rows
-  std::vector<StraightUse> straight_use_;         ///< of the cells
+  std::vector<AccelerationRows> middle_rows_;                  ///< of curved cells, b' as h b'
+  std::vector<Use> acceleration_use_, jerk_use_, middle_use_;  ///< of the rows
+  std::vector<StraightUse> straight_use_;                      ///< of the cells
   double ceiling_weight_ = 1.0;
   double start_ceiling_ = 0.0, end_ceiling_ = 0.0;
 };

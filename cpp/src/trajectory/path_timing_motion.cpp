@@ -39,7 +39,7 @@ double BarrierProblem::jerk_share(size_t index, const SquareRate& rate) const {
     return worst * cell.straight_jerk;
   }
   Pair worst = Pair::Zero();
-  const size_t pairs = (cell.end - cell.begin) / kCurvedPlaces.size();
+  const size_t pairs = cell.pairs();
   size_t row = cell.begin;
   for (const Place& place : kCurvedPlaces) {
     const double b = dot(place.value, x), slope = dot(place.slope, x), bend = dot(place.bend, x);
@@ -81,7 +81,16 @@ std::vector<Shares> BarrierProblem::shares(const SquareRate& rate) const {
           std::max(shares[k].acceleration,
                    std::hypot(dot(cell_cones_[r].along, x), dot(cell_cones_[r].across, x)));
     }
-    if (!cell.straight()) continue;
+    if (!cell.straight()) {
+      const Four x = cell.numbers(rate[k - 1], rate[k]);
+      const double b = dot(kMiddle.value, x), slope = dot(kMiddle.slope, x);
+      for (size_t r = cell.middle; r < cell.middle + cell.pairs(); ++r) {
+        shares[k].acceleration =
+            std::max(shares[k].acceleration,
+                     (b * middle_rows_[r].b + slope * middle_rows_[r].slope).abs().maxCoeff());
+      }
+      continue;
+    }
     const double slope = dot(kMiddle.slope, cell.numbers(rate[k - 1], rate[k]));
     shares[k].acceleration =
         std::max(shares[k].acceleration, cell.straight_acceleration * std::abs(slope));

@@ -17,6 +17,7 @@ BarrierProblem::BarrierProblem(const Course& course, const Grid& grid)
   nodes_.reserve(cells);
   jerk_rows_.reserve(cells * kCurvedPlaces.size() * pairs);
   acceleration_rows_.reserve(cells * (pairs + 1));
+  middle_rows_.reserve(cells * pairs);
   for (size_t k = 0; k < cells; ++k) {
     add_cell(grid.cells[k], k > 0 && k + 1 < cells);
     if (k + 1 < cells) add_node(grid.cells[k], grid.cells[k + 1]);
@@ -32,6 +33,7 @@ BarrierProblem::BarrierProblem(const Course& course, const Grid& grid)
   for (size_t k = 1; k + 1 < cells; ++k) set_inner_ceilings(k);
   acceleration_use_.resize(acceleration_rows_.size());
   jerk_use_.resize(jerk_rows_.size());
+  middle_use_.resize(middle_rows_.size());
   straight_use_.resize(cells_.size());
   set_ceilings();
 }
@@ -42,6 +44,7 @@ void BarrierProblem::add_cell(const Cell& cell, bool inner) {
   rows.length = cell.length();
   rows.gear = cell.gear;
   rows.begin = jerk_rows_.size();
+  rows.middle = middle_rows_.size();
   rows.held = inner && is_held(stretch);
   const double h = rows.length;
   if (inner && stretch.straight) {
@@ -56,6 +59,9 @@ void BarrierProblem::add_cell(const Cell& cell, bool inner) {
         const auto pair = [i](const auto& values) { return Pair(values[i], values[i + 1]); };
         jerk_rows_.push_back(
             {pair(rates.jerk3), 1.5 / h * pair(rates.jerk2), 0.5 / (h * h) * pair(rates.jerk1)});
+        if (place.at == kMiddle.at) {
+          middle_rows_.push_back({pair(rates.acceleration2), 0.5 / h * pair(rates.acceleration1)});
+        }
       }
     }
   }

@@ -70,6 +70,19 @@ TEST(ReachabilityTiming, IsNeverSlowerThanWithJerk) {
   }
 }
 
+/// Acceleration rules nearly everywhere here, between nodes as well as at them.
+TEST(ReachabilityTiming, IsHardlyQuickerThanWithAJerkThatHardlyRules) {
+  for (unsigned seed = 0; seed < 40; ++seed) {
+    SCOPED_TRACE(seed);
+    Random random(seed);
+    const JointPath path = random_spline(random, 4, 8, 1.0, 0.3);
+    const JointVector v = JointVector::Constant(4, 2.0);
+    const JointLimits limits = limits_of(v, 5.0 * v, 2500.0 * v);
+    const double without_jerk = duration_of(parameterize_without_jerk(path, limits));
+    ASSERT_LE(duration_of(parameterize(path, limits)), 1.08 * without_jerk);
+  }
+}
+
 TEST(ReachabilityTiming, TimesAStraightLineByConstantAcceleration) {
   const JointLimits limits = arm_limits();
   JointVector a = JointVector::Zero(6), b(6);
