@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _core
-from ._arguments import Vector
+from ._rotation_vectors import quaternions
 from .errors import FileError
 
 if TYPE_CHECKING:
@@ -154,7 +154,7 @@ def _messages(log: RunLog) -> Iterator[tuple[str, int, int, dict[str, Any]]]:
     """All of a log in the order of time: topic, number of the cycle's row, stamp and content."""
     names = log.robot.joint_names
     poses = log.samples.pose if log.robot.has_kinematics else None
-    turns = None if poses is None else [quaternion(pose[:3, :3]) for pose in poses]
+    turns = None if poses is None else quaternions(poses[:, :3, :3]).tolist()
     before: dict[str, Any] = {}
     for k in range(len(log)):
         stamp = int(log.stamp[k])
@@ -174,7 +174,8 @@ def _messages(log: RunLog) -> Iterator[tuple[str, int, int, dict[str, Any]]]:
         yield "/joint_states", k, stamp, {"joints": joints}
         if poses is not None and turns is not None:
             x, y, z = poses[k, :3, 3].tolist()
-            pose = {"position": {"x": x, "y": y, "z": z}, "orientation": turns[k]}
+            turn = dict(zip("wxyz", turns[k], strict=True))
+            pose = {"position": {"x": x, "y": y, "z": z}, "orientation": turn}
             yield "/tool", k, stamp, {"frame_id": "base", "pose": pose}
         now = {"state": state, "move": scalars["move"], "outputs": scalars["outputs"]}
         for text in _events(before, now):
@@ -192,23 +193,3 @@ def _events(before: dict[str, Any], now: dict[str, Any]) -> Iterator[str]:
     for output in range(changed.bit_length()):
         if changed >> output & 1:
             yield f"output {output}: {'on' if now['outputs'] >> output & 1 else 'off'}"
-
-
-def quaternion(rotation: Vector) -> dict[str, float]:
-    """Return the unit quaternion of a matrix with w >= 0, by its largest part (Shepperd 1978)."""
-    trace = float(np.trace(rotation))
-    parts = np.array([trace, *np.diag(rotation)])
-    k = int(np.argmax(parts))
-    if k == 0:
-        vector = np.array([rotation[2, 1], rotation[0, 2], rotation[1, 0]])
-        vector -= np.array([rotation[1, 2], rotation[2, 0], rotation[0, 1]])
-        q = np.array([1.0 + trace, *vector])
-    else:
-        a, b, c = k - 1, k % 3, (k + 1) % 3
-        q = np.empty(4)
-        q[0] = rotation[c, b] - rotation[b, c]
-        q[1 + a] = 1.0 + 2.0 * rotation[a, a] - trace
-        q[1 + b] = rotation[b, a] + rotation[a, b]
-        q[1 + c] = rotation[c, a] + rotation[a, c]
-    w, x, y, z = (q / np.linalg.norm(q) * (1.0 if q[0] >= 0.0 else -1.0)).tolist()
-    return {"x": x, "y": y, "z": z, "w": w}

@@ -1,17 +1,15 @@
-"""The command ``viapoint``: run, check, plot, export or verify a script; list the robots."""
+"""The command ``viapoint``: run, check, plot, export or verify a script; read logs; list robots."""
 
 from __future__ import annotations
 
 import io
-import runpy
 import signal
 import sys
 import tempfile
-import traceback
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from types import FrameType, TracebackType
+from types import FrameType
 from typing import Annotated
 
 import typer
@@ -19,9 +17,11 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from . import _core, _session
+from . import _core, iso9283
+from ._accuracy_table import accuracy_tables
 from ._arguments import writing
 from ._job import Job
+from ._log_files import load_log
 from ._motion import Motion
 from ._outcome import (
     file_stem,
@@ -35,10 +35,11 @@ from ._outcome import (
 from ._program import Program
 from ._recorder import ProgressRecorder, Recorder
 from ._report import Report
-from ._robot import Robot, load_robot
+from ._robot import load_robot
 from ._robot_check import findings, joint_table, remarks
+from ._script import execute
 from ._verification import finding_lines, is_motion_file, verdict_on, verdict_table
-from .errors import BadArgumentError, FileError, MotionError
+from .errors import FileError, MotionError
 
 app = typer.Typer(
     help="Programs in, proven 2 ms setpoints out.",
@@ -66,7 +67,7 @@ def run(script: Script, out: Folder = Path("out"), robot: RobotFile = None) -> N
     try:
         with _reported(recorder), _signals_as_ctrl_c():
             _require_writable(out)
-            _execute(script, recorder, robot)
+            execute(script, recorder, errors, robot)
     finally:
         try:
             recorder.close()
@@ -89,7 +90,7 @@ def check(script: Script, robot: RobotFile = None) -> None:
     wrong = False
     try:
         with _reported(recorder):
-            _execute(script, recorder, robot)
+            execute(script, recorder, errors, robot)
     finally:
         told = [program for program, error in recorder.refusals if error is recorder.ended_by]
         for program in recorder.programs:
@@ -107,7 +108,7 @@ def plot(script: Script, out: Folder = Path("out"), robot: RobotFile = None) -> 
     recorder = Recorder(virtual=True)
     with _reported(recorder):
         _require_writable(out)
-        _execute(script, recorder, robot)
+        execute(script, recorder, errors, robot)
         taken: set[str] = set()
         for motion in recorder.chosen:
             console.print(*motion_tables(motion))
@@ -127,7 +128,7 @@ def export(
     recorder = Recorder(virtual=True)
     with _reported(recorder):
         _require_writable(out)
-        _execute(script, recorder, robot)
+        execute(script, recorder, errors, robot)
         with writing(out):
             out.mkdir(parents=True, exist_ok=True)
         taken: set[str] = set()
@@ -161,7 +162,7 @@ def verify(
         if is_motion_file(file):
             holds = _say_verdict(file)
         else:
-            _execute(file, recorder, robot)
+            execute(file, recorder, errors, robot)
             holds = True
             with tempfile.TemporaryDirectory() as folder:
                 for i, motion in enumerate(recorder.chosen):
@@ -181,6 +182,23 @@ def _say_verdict(file: Path) -> bool:
     for line in finding_lines(verdict):
         console.print(line, highlight=False, soft_wrap=not console.is_terminal)
     return verdict.holds
+
+
+@app.command()
+def report(
+    logs: Annotated[
+        list[Path], typer.Argument(metavar="LOG...", help="Logs of runs of one program")
+    ],
+    robot: Annotated[
+        str | None, typer.Option("--robot", help="The arm of .csv logs: a name, .yaml or .urdf")
+    ] = None,
+    places: Annotated[int, typer.Option("--places", help="Where the paths are compared")] = 50,
+) -> None:
+    """Tell accuracy and repeatability by ISO 9283 from logs of several runs of one program."""
+    with _reported(Recorder(virtual=True)):
+        arm = None if robot is None else load_robot(robot)
+        found = iso9283.from_logs([load_log(log, arm) for log in logs], places=places)
+        console.print(*accuracy_tables(found))
 
 
 robots_app = typer.Typer(help="List the built-in robots; explain a description.")
@@ -245,49 +263,6 @@ def main() -> None:
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
     app()
-
-
-def _execute(script: Path, session: _session.Session, robot: str | None = None) -> None:
-    """Run a script as Python would, or a program file on a simulated arm."""
-    if not script.is_file():
-        raise FileError(f"There is no script {script}.", file=str(script))
-    with _session.use(session):
-        if script.suffix == ".json":
-            _execute_program(script, None if robot is None else load_robot(robot))
-            return
-        if robot is not None:
-            raise BadArgumentError(
-                f"--robot {robot} is for program files (.json); {script} chooses its own robot."
-            )
-        arguments, path = sys.argv, sys.path
-        sys.argv, sys.path = [str(script)], [str(script.resolve().parent), *path]
-        try:
-            runpy.run_path(str(script), run_name="__main__")
-        except MotionError:
-            raise
-        except Exception as error:
-            trace = _from_script_on(error.__traceback__, str(script))
-            text = "".join(traceback.format_exception(type(error), error, trace))
-            errors.print(text, end="", markup=False, highlight=False, soft_wrap=True)
-            raise typer.Exit(1) from error
-        finally:
-            sys.argv, sys.path = arguments, path
-
-
-def _execute_program(path: Path, robot: Robot | None) -> None:
-    from ._arm import connect
-
-    program = Program.load(path, robot)
-    arm_robot = program.robot
-    with connect(f"sim://{arm_robot.name}", start=program.start, robot=arm_robot) as arm:
-        arm.run(program)
-
-
-def _from_script_on(trace: TracebackType | None, script: str) -> TracebackType | None:
-    """Leave out the frames that run the script; none is left of one that is no Python."""
-    while trace is not None and trace.tb_frame.f_code.co_filename != script:
-        trace = trace.tb_next
-    return trace
 
 
 def _save_own_robots(motions: list[Motion], out: Path) -> list[Path]:
