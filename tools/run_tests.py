@@ -109,6 +109,7 @@ def run_pytest(options: argparse.Namespace, passed: Passed) -> Counts:
         return Counts()
     report = ROOT / REPORTS / "pytest.xml"
     command = [sys.executable, "-m", "pytest", "-q", f"--junitxml={report}"]
+    command += ["--numprocesses", str(os.cpu_count() or 1), "--dist", "worksteal"]
     command += ["-k", options.k] if options.k else []
     command += options.pytest_arguments
     # Pictures are drawn without a screen.
