@@ -25,10 +25,20 @@ constexpr double kSame = 1e-7;
 /// Of the places reached so far, so many are also followed by the nearest solution.
 constexpr size_t kFollowed = 8;
 
+/// How far goal joints may miss the last pose [m, rad].
+constexpr double kGoalMiss = 1e-6;
+
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 double step_between(const JointVector& a, const JointVector& b) {
   return (a - b).cwiseAbs().maxCoeff();
+}
+
+bool holds(const RobotModel& robot, const JointVector& q, const Pose& pose) {
+  if (q.size() != robot.joints()) return false;
+  const Pose reached = robot.forward().pose(q);
+  return (reached.translation() - pose.translation()).norm() <= kGoalMiss &&
+         rotation_distance(reached.linear(), pose.linear()) <= kGoalMiss;
 }
 
 /// A solution of one pose that is reached without a jump.
@@ -41,8 +51,9 @@ using Layer = std::vector<Place>;
 
 class Follower {
  public:
-  Follower(const RobotModel& robot, std::span<const Pose> poses, double largest_step)
-      : inverse_(robot.inverse()), poses_(poses), largest_step_(largest_step) {
+  Follower(const RobotModel& robot, std::span<const Pose> poses, double largest_step,
+           const JointVector* goal)
+      : inverse_(robot.inverse()), poses_(poses), largest_step_(largest_step), goal_(goal) {
     if (inverse_.redundancy().empty()) return;
     open_ = true;
     from_ = -kPi;
@@ -91,6 +102,7 @@ class Follower {
       at(k, [&] { way.push_back(inverse_.solve_near(poses_[k], way[k - 1])); });
       if (step_between(way[k], way[k - 1]) > largest_step_) return std::nullopt;
     }
+    if (goal_ != nullptr && step_between(way.back(), *goal_) > kSame) return std::nullopt;
     return way;
   }
 
@@ -123,6 +135,7 @@ class Follower {
 
   std::vector<JointVector> candidates(size_t k, const Layer& reached,
                                       const std::vector<JointVector>* about) const {
+    if (goal_ != nullptr && k + 1 == poses_.size()) return {*goal_};
     std::vector<JointVector> found;
     const auto keep = [&](const std::vector<JointVector>& more) {
       found.insert(found.end(), more.begin(), more.end());
@@ -223,6 +236,7 @@ class Follower {
   const InverseKinematics& inverse_;
   std::span<const Pose> poses_;
   double largest_step_;
+  const JointVector* goal_;
   bool open_ = false;  ///< seven joints, of which a pose leaves one number open
   double from_ = 0.0;  ///< its range
   double to_ = 0.0;
@@ -232,7 +246,8 @@ class Follower {
 }  // namespace
 
 std::vector<JointVector> follow_poses(const RobotModel& robot, std::span<const Pose> poses,
-                                      const JointVector& start, double largest_step) {
+                                      const JointVector& start, double largest_step,
+                                      const JointVector* goal) {
   if (!robot.has_kinematics()) {
     throw MotionError(ErrorCode::kUncontrolled,
                       "robot \"" + robot.name() + "\" has no kinematics: poses mean nothing to it",
@@ -243,7 +258,10 @@ std::vector<JointVector> follow_poses(const RobotModel& robot, std::span<const P
         ErrorCode::kBadArgument,
         poses.empty() ? "no pose to follow" : "the largest step must be positive and finite");
   }
-  return Follower(robot, poses, largest_step).run(start);
+  if (goal != nullptr && !holds(robot, *goal, poses.back())) {
+    throw MotionError(ErrorCode::kBadArgument, "the goal joints do not hold the last pose");
+  }
+  return Follower(robot, poses, largest_step, goal).run(start);
 }
 
 }  // namespace viapoint

@@ -111,6 +111,26 @@ CurveFollower::Block CurveFollower::held_rate(const ChainFrames& frames, const J
   return block;
 }
 
+std::optional<CurveFollower::Guidance> CurveFollower::guidance(double s) const {
+  if (options_.guide == nullptr) return std::nullopt;
+  const PathPoint direction = options_.guide->direction.at(s);
+  const PathPoint joints = options_.guide->joints.at(s);
+  return Guidance{direction.q, direction.q1, direction.q2, joints.q, joints.q1, joints.q2};
+}
+
+CurveFollower::Block CurveFollower::with_row(Block block, const std::optional<Guidance>& guidance) {
+  if (!guidance) return block;
+  block.conservativeResize(block.rows() + 1, Eigen::NoChange);
+  block.bottomRows<1>() = guidance->w.transpose();
+  return block;
+}
+
+CurveFollower::Rows CurveFollower::with_value(Rows rows, double value) {
+  rows.conservativeResize(rows.size() + 1);
+  rows[rows.size() - 1] = value;
+  return rows;
+}
+
 void CurveFollower::place_wrist(double s, JointVector& q) const {
   for (int i = free_joints_; i < arm_.joints(); ++i) q[i] = start_[i] + wrist_rate_[i] * s;
 }
@@ -119,27 +139,35 @@ std::optional<CurveFollower::Knot> CurveFollower::solve(double s, const JointVec
   JointVector q = guess;
   place_wrist(s, q);
   const JointVector from = q;
+  const std::optional<Guidance> guide = guidance(s);
+  const auto rows_of = [&](const ChainFrames& at, const Twist& missed, const JointVector& joints) {
+    const Rows rows = held(at, missed);
+    return guide ? with_value(rows, guide->w.dot(guide->r - joints)) : rows;
+  };
   ChainFrames frames = arm_.frames(q);
   Twist error = miss(s, frames.pose_base_tool);
-  double size = held(frames, error).norm();
+  Rows rows = rows_of(frames, error, q);
+  double size = rows.norm();
   for (int step = 0; step < kNewtonSteps && size > kConverged; ++step) {
     Eigen::CompleteOrthogonalDecomposition<Block> solver;
     solver.setThreshold(kRankThreshold);
-    solver.compute(held(frames, arm_.jacobian(frames)));
+    solver.compute(with_row(held(frames, arm_.jacobian(frames)), guide));
     JointVector trial = q;
-    trial.head(free_joints_) += solver.solve(held(frames, error));
+    trial.head(free_joints_) += solver.solve(rows);
     if (!trial.allFinite() || (trial - from).lpNorm<Eigen::Infinity>() > kLargestCorrection) {
       return std::nullopt;
     }
     const ChainFrames trial_frames = arm_.frames(trial);
     const Twist trial_error = miss(s, trial_frames.pose_base_tool);
-    const double trial_size = held(trial_frames, trial_error).norm();
+    const Rows trial_rows = rows_of(trial_frames, trial_error, trial);
+    const double trial_size = trial_rows.norm();
     // Near a solution a step that no longer gains is rounding; far from one it is divergence, and
     // the test of the residual below tells.
     if (step > 2 && trial_size >= size) break;
     q = trial;
     frames = trial_frames;
     error = trial_error;
+    rows = trial_rows;
     size = trial_size;
   }
   const Deviation residual = {error.head<3>().norm(), error.tail<3>().norm()};
@@ -155,9 +183,11 @@ CurveFollower::Knot CurveFollower::derivatives(double s, const JointVector& q) c
   const CurvePoint wanted = curve_.at(s);
   const Jacobian jacobian = arm_.jacobian(frames);
   const Block block = held(frames, jacobian);
+  const std::optional<Guidance> guide = guidance(s);
   Eigen::CompleteOrthogonalDecomposition<Block> solver;
   solver.setThreshold(kRankThreshold);
-  solver.compute(block);
+  solver.compute(with_row(block, guide));
+  const JointVector off = guide ? JointVector(q - guide->r) : JointVector();
 
   Knot knot;
   const Twist error = miss(s, frames.pose_base_tool);
@@ -168,7 +198,9 @@ CurveFollower::Knot CurveFollower::derivatives(double s, const JointVector& q) c
   rate << wanted.p1, wanted.w;
   const Rows wanted_rate = held(frames, rate);
   const Rows by_free = held(frames, Twist(rate - jacobian * wrist_rate_));
-  knot.point.q1.head(free_joints_) = solver.solve(by_free);
+  knot.point.q1.head(free_joints_) =
+      guide ? solver.solve(with_value(by_free, guide->w.dot(guide->r1) - guide->w1.dot(off)))
+            : solver.solve(by_free);
   const double rate_size = wanted_rate.norm();
   const Rows rate_miss = block * knot.point.q1.head(free_joints_) - by_free;
   knot.rate_residual = rate_size > 0.0 ? rate_miss.norm() / rate_size : 0.0;
@@ -181,8 +213,15 @@ CurveFollower::Knot CurveFollower::derivatives(double s, const JointVector& q) c
   const Eigen::Vector3d tool_rate = (jacobian * knot.point.q1).tail<3>();
   if (coordinates_ == kAxisCoordinates) rate_change.tail<3>() -= tool_rate.cross(wanted.w);
   knot.point.q2 = JointVector::Zero(arm_.joints());
-  knot.point.q2.head(free_joints_) = solver.solve(held(frames, rate_change));
-  if (free_joints_ > coordinates_) {
+  const Rows change = held(frames, rate_change);
+  if (guide) {
+    const double along = guide->w.dot(guide->r2) - 2.0 * guide->w1.dot(knot.point.q1 - guide->r1) -
+                         guide->w2.dot(off);
+    knot.point.q2.head(free_joints_) = solver.solve(with_value(change, along));
+  } else {
+    knot.point.q2.head(free_joints_) = solver.solve(change);
+  }
+  if (!guide && free_joints_ > coordinates_) {
     // The derivative of least norm lacks what turns the row space of J: (I − J⁺J) J'ᵀλ.
     const BlockTransposed transposed = block.transpose();
     Eigen::CompleteOrthogonalDecomposition<BlockTransposed> dual;
@@ -224,6 +263,16 @@ Twist CurveFollower::nearest_miss(double s, JointVector guess) const {
     }
   }
   return error;
+}
+
+JointVector CurveFollower::open_direction(const JointVector& q) const {
+  const ChainFrames frames = arm_.frames(q);
+  const BlockTransposed transposed = held(frames, arm_.jacobian(frames)).transpose();
+  const Eigen::ColPivHouseholderQR<BlockTransposed> factors(transposed);
+  // The last column of Q is square to all rows.
+  JointVector direction = JointVector::Unit(free_joints_, free_joints_ - 1);
+  direction.applyOnTheLeft(factors.householderQ());
+  return direction;
 }
 
 Eigen::VectorXd CurveFollower::singular_values(const JointVector& q) const {

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "planning/chosen_way.hpp"
 #include "planning/spline_way.hpp"
 #include "planning/tool_way.hpp"
 #include "viapoint/kinematics/inverse_kinematics.hpp"
@@ -14,8 +15,6 @@
 namespace viapoint::planning {
 namespace {
 
-/// How near a curve must come to the joints it was asked for [rad or m].
-constexpr double kSameBranch = 1e-3;
 /// So many ends of the wrist are tried at most. Wide position limits allow every branch on hundreds
 /// of turns of the wrist, and where the nearest of them lead nowhere, one more turn does not help.
 constexpr size_t kMostWristEnds = 32;
@@ -66,7 +65,10 @@ Leg LegBuilder::ptp(const PtpMove& move, const JointVector& start) const {
 
 Leg LegBuilder::follow(const TaskCurve& curve, const JointVector& start,
                        const InsertionOptions& how) const {
-  Insertion inserted = insert_curve(robot_.forward(), robot_.limits(), curve, start, how);
+  return leg_of(start, insert_curve(robot_.forward(), robot_.limits(), curve, start, how));
+}
+
+Leg LegBuilder::leg_of(const JointVector& start, Insertion inserted) {
   Leg leg;
   leg.start = start;
   leg.goal = inserted.knots.back();
@@ -112,10 +114,19 @@ Leg LegBuilder::travel(const ToolWay& way, const JointVector& start) const {
   how.position_tolerance = tolerance_.position;
   how.angle_tolerance = tolerance_.angle;
   how.hold = way.hold;
-  Leg leg = follow(*way.curve, start, how);
   const auto* joints = std::get_if<JointTarget>(&way.goal);
-  if (joints != nullptr && way.joints_count) require_arrival(joints->q, leg);
-  return leg;
+  const JointVector* arrival = joints != nullptr && way.joints_count ? &joints->q : nullptr;
+  try {
+    Leg leg = follow(*way.curve, start, how);
+    if (arrival != nullptr) require_arrival(*arrival, leg);
+    return leg;
+  } catch (const MotionError& error) {
+    // A place on the curve where joints cannot go on, and no fault of the curve itself.
+    if (!error.problem().share || !leaves_one_open(robot_, how.hold)) throw;
+    std::optional<Insertion> chosen = insert_with_choice(robot_, *way.curve, start, arrival, how);
+    if (!chosen) throw;
+    return leg_of(start, *std::move(chosen));
+  }
 }
 
 void LegBuilder::require_arrival(const JointVector& wanted, const Leg& leg) const {

@@ -37,6 +37,7 @@ class LegBuilder {
  private:
   [[nodiscard]] Leg follow(const TaskCurve& curve, const JointVector& start,
                            const InsertionOptions& how) const;
+  [[nodiscard]] static Leg leg_of(const JointVector& start, Insertion inserted);
   [[nodiscard]] Leg travel(const ToolWay& way, const JointVector& start) const;
   [[nodiscard]] Leg travel_by_wrist(const ToolWay& way, const JointVector& start) const;
   /// Ends of the wrist joints to try, the nearest first.

@@ -13,6 +13,8 @@ namespace viapoint::planning {
 
 /// Below this a move goes nowhere [rad or m].
 inline constexpr double kNowhere = 1e-9;
+/// How near a curve must come to the joints it was asked for [rad or m].
+inline constexpr double kSameBranch = 1e-3;
 
 struct ToolWay {
   std::unique_ptr<const TaskCurve> curve;

@@ -20,6 +20,7 @@ inline constexpr double kLargestStep = 0.2;
 /// as far as their search finds the branches.
 /// @param poses pose_base_tool, (k,), k ≥ 1
 /// @param start the solution of the first pose nearest to these joints begins the way [rad or m]
+/// @param goal joints of the last pose that the way has to end at; null where any that hold it do
 /// @return (k,)
 /// @throws MotionError(kBranchChange) with share, joint, value and limit where every choice ends:
 /// a limit, or a singularity passed too near; kUnreachable, kOutsideLimits, kUncontrolled with the
@@ -28,6 +29,7 @@ inline constexpr double kLargestStep = 0.2;
 [[nodiscard]] std::vector<JointVector> follow_poses(const RobotModel& robot,
                                                     std::span<const Pose> poses,
                                                     const JointVector& start,
-                                                    double largest_step = kLargestStep);
+                                                    double largest_step = kLargestStep,
+                                                    const JointVector* goal = nullptr);
 
 }  // namespace viapoint

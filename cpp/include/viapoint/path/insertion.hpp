@@ -21,12 +21,17 @@ enum class Hold {
   kWrist,     ///< position by the first three joints; the others go straight to `wrist_goal`
 };
 
+struct JointGuide;
+
 struct InsertionOptions {
   double position_tolerance = 5e-5;  ///< [m]
   double angle_tolerance =
       1.7453292519943296e-4;  ///< [rad]; of the rotation, or of the axis for kAxis
   Hold hold = Hold::kPose;
   JointVector wrist_goal;  ///< (n,), entries from 3 on are used; Hold::kWrist only
+  /// Which joints are taken where there is one more than coordinates held (path/joint_guide.hpp),
+  /// from `start` on; null: those of the least rate. Borrowed.
+  const JointGuide* guide = nullptr;
 };
 
 struct Insertion {
