@@ -25,46 +25,84 @@ double binomial(int n, int k) {
   return kBinomials[static_cast<std::size_t>(n)][static_cast<std::size_t>(k)];
 }
 
-/// Bernstein coefficients times C(n, i): products are then plain convolutions. Degree -1 is zero.
-struct Scaled {
-  int degree = -1;
-  std::array<double, kCapacity> c{};
-};
+/// Their inverses: division is slow.
+constexpr auto kInverses = [] {
+  auto table = kBinomials;
+  for (std::size_t n = 0; n < kCapacity; ++n) {
+    for (std::size_t k = 0; k <= n; ++k) table[n][k] = 1.0 / kBinomials[n][k];
+  }
+  return table;
+}();
 
-Scaled one(int degree) {
-  Scaled result;
-  result.degree = degree;
-  if (degree >= 0) result.c = kBinomials[static_cast<std::size_t>(degree)];
-  return result;
+using Scaled = BernsteinComposition::Scaled;
+
+/// 1, raised to every degree.
+constexpr auto kOnes = [] {
+  std::array<Scaled, kCapacity> ones;
+  for (std::size_t n = 0; n < kCapacity; ++n) {
+    ones[n].degree = static_cast<int>(n);
+    for (std::size_t k = 0; k <= n; ++k) ones[n].padded[Scaled::kPad + k] = kBinomials[n][k];
+  }
+  return ones;
+}();
+
+double inverse_binomial(int n, int k) {
+  return kInverses[static_cast<std::size_t>(n)][static_cast<std::size_t>(k)];
+}
+
+/// sum[m] += factor Σ f[i] g[m - i] over the first `count` m, f having Size coefficients; g is
+/// padded with zeros.
+template <std::size_t Size>
+void convolve(const double* f, double factor, const double* g, std::size_t count, double* sum) {
+  std::array<double, Size> weight;
+  for (std::size_t i = 0; i < Size; ++i) weight[i] = factor * f[i];
+  for (std::size_t m = 0; m < count; ++m) {
+    double total = 0.0;
+    for (std::size_t i = 0; i < Size; ++i) total += weight[i] * *(g + m - i);
+    sum[m] += total;
+  }
 }
 
 /// sum += factor f g. @pre sum.degree == f.degree + g.degree unless one of them is zero
 void add_product(Scaled& sum, double factor, const Scaled& f, const Scaled& g) {
   if (f.degree < 0 || g.degree < 0) return;
+  if (f.degree > g.degree) return add_product(sum, factor, g, f);
+  constexpr std::size_t kMost = Scaled::kPad + 1;
   const auto nf = static_cast<std::size_t>(f.degree) + 1;
   const auto ng = static_cast<std::size_t>(g.degree) + 1;
-  for (std::size_t i = 0; i < nf; ++i) {
-    const double scaled = factor * f.c[i];
-    for (std::size_t j = 0; j < ng; ++j) sum.c[i + j] += scaled * g.c[j];
+  for (std::size_t at = 0; at < nf; at += kMost) {
+    const std::size_t part = std::min(kMost, nf - at), count = part + ng - 1;
+    const double* from = f.data() + at;
+    double* to = sum.data() + at;
+    switch (part) {
+      case 1:
+        convolve<1>(from, factor, g.data(), count, to);
+        break;
+      case 2:
+        convolve<2>(from, factor, g.data(), count, to);
+        break;
+      case 3:
+        convolve<3>(from, factor, g.data(), count, to);
+        break;
+      case 4:
+        convolve<4>(from, factor, g.data(), count, to);
+        break;
+      case 5:
+        convolve<5>(from, factor, g.data(), count, to);
+        break;
+      default:
+        convolve<kMost>(from, factor, g.data(), count, to);
+    }
   }
 }
 
-Scaled product(const Scaled& f, const Scaled& g) {
-  Scaled result;
-  if (f.degree < 0 || g.degree < 0) return result;
-  result.degree = f.degree + g.degree;
-  add_product(result, 1.0, f, g);
-  return result;
-}
-
 /// A polynomial and its first three derivatives, each of its own natural degree.
-using Jet = std::array<Scaled, 4>;
+using Jet = BernsteinComposition::Jet;
 /// Upper bounds of the same.
 using Magnitude = std::array<double, 4>;
 
-/// Leibniz' rule. The smaller factor first is quicker.
-Jet leibniz(const Jet& f, const Jet& g) {
-  Jet result;
+/// Leibniz' rule.
+void leibniz(const Jet& f, const Jet& g, Jet& result) {
   for (int d = 0; d < 4; ++d) {
     Scaled& sum = result[static_cast<std::size_t>(d)];
     sum.degree = std::max(-1, f[0].degree + g[0].degree - d);
@@ -73,7 +111,6 @@ Jet leibniz(const Jet& f, const Jet& g) {
                   g[static_cast<std::size_t>(d - i)]);
     }
   }
-  return result;
 }
 
 Magnitude leibniz(const Magnitude& f, const Magnitude& g) {
@@ -102,7 +139,7 @@ Scaled from_monomials(const std::array<double, 6>& a, int degree) {
   Scaled result;
   result.degree = degree;
   for (int i = 0; i <= degree; ++i) {
-    double& sum = result.c[static_cast<std::size_t>(i)];
+    double& sum = result.data()[i];
     for (int j = 0; j <= i; ++j) {
       sum += binomial(degree - j, i - j) * a[static_cast<std::size_t>(j)];
     }
@@ -113,7 +150,7 @@ Scaled from_monomials(const std::array<double, 6>& a, int degree) {
 double magnitude(const Scaled& f) {
   double largest = 0.0;
   for (int i = 0; i <= f.degree; ++i) {
-    largest = std::max(largest, std::abs(f.c[static_cast<std::size_t>(i)]) / binomial(f.degree, i));
+    largest = std::max(largest, std::abs(f.data()[i]) * inverse_binomial(f.degree, i));
   }
   return largest;
 }
@@ -150,15 +187,6 @@ TimingJet timing_jet(const TrajectoryPiece& piece, int degree) {
   return u;
 }
 
-BernsteinPolynomial unscaled(const Scaled& f) {
-  BernsteinPolynomial result(std::max(f.degree, 0));
-  for (int i = 0; i <= f.degree; ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    result.coefficients()[at] = f.c[at] / binomial(f.degree, i);
-  }
-  return result;
-}
-
 }  // namespace
 
 BernsteinComposition::BernsteinComposition(const TrajectoryPiece& piece)
@@ -166,29 +194,45 @@ BernsteinComposition::BernsteinComposition(const TrajectoryPiece& piece)
   const TimingJet u = timing_jet(piece, timing_degree_);
   // Even a piece that stands still has a timing, which is asked for.
   path_degree_ = std::max(path_degree_, 1);
-  Jet power = u.jet;
   Magnitude size_before = {1.0, 0.0, 0.0, 0.0};
   for (int k = 1; k <= path_degree_; ++k) {
-    if (k > 1) {
-      power = leibniz(u.jet, power);
+    const auto at = static_cast<std::size_t>(k) - 1;
+    if (k == 1) {
+      jets_[at] = u.jet;
+    } else {
+      leibniz(u.jet, jets_[at - 1], jets_[at]);
       size_before = leibniz(u.size, size_before);
     }
-    const Scaled raise = one(timing_degree_ * (path_degree_ - k));
     // First order in the error of u: d(u^k) = k u^(k-1) du.
     const Magnitude error = leibniz(u.error, size_before);
-    const auto column = static_cast<std::size_t>(k) - 1;
     for (std::size_t d = 0; d < kOrders; ++d) {
-      powers_[d][column] = unscaled(raise.degree > 0 ? product(raise, power[d]) : power[d]);
-      rounding_[d][column] = k * error[d];
-      for (const double c : powers_[d][column].coefficients()) {
-        magnitude_[d][column] = std::max(magnitude_[d][column], std::abs(c));
-      }
+      rounding_[d][at] = k * error[d];
+      magnitude_[d][at] = viapoint::magnitude(jets_[at][d]);
     }
   }
 }
 
+const BernsteinComposition::Powers& BernsteinComposition::raised(std::size_t order) const {
+  Powers& powers = raised_[order];
+  if (is_raised_[order]) return powers;
+  is_raised_[order] = true;
+  for (int k = 1; k <= path_degree_; ++k) {
+    const auto at = static_cast<std::size_t>(k) - 1;
+    const Scaled& power = jets_[at][order];
+    const int raise = timing_degree_ * (path_degree_ - k), degree = power.degree + raise;
+    Scaled sum;
+    add_product(sum, 1.0, kOnes[static_cast<std::size_t>(raise)], power);
+    powers[at] = BernsteinPolynomial(std::max(degree, 0));
+    for (int i = 0; i <= degree && power.degree >= 0; ++i) {
+      powers[at].coefficients()[static_cast<std::size_t>(i)] =
+          sum.data()[i] * inverse_binomial(degree, i);
+    }
+  }
+  return powers;
+}
+
 BernsteinPolynomial BernsteinComposition::of(const Path& path, int order) const {
-  const auto& powers = powers_[static_cast<std::size_t>(order)];
+  const Powers& powers = raised(static_cast<std::size_t>(order));
   BernsteinPolynomial sum(std::max(0, timing_degree_ * path_degree_ - order));
   const auto b = sum.coefficients();
   if (order == 0) std::ranges::fill(b, path[0]);

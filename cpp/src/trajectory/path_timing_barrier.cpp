@@ -313,17 +313,18 @@ double BarrierProblem::largest_step(const SquareRate& rate, const SquareRate& st
   return worst > 0.0 ? 1.0 / worst : kInfinite;
 }
 
-bool BarrierProblem::solve(SquareRate& rate, double weight, double last_weight) {
-  constexpr double kReduction = 0.2;
-  constexpr int kMostSteps = 200, kMostAtOneWeight = 7;
+bool BarrierProblem::solve(SquareRate& rate, double from, double weight) {
+  constexpr int kMostSteps = 200, kMany = 7;
   constexpr double kStillFar = 10.0, kSlowly = 0.97;
   constexpr double kBoundary = 0.95;
   double before = kInfinite;
   NewtonSystem newton(nodes_.size());
   SquareRate step(nodes_.size());
-  double curvature = weight;
-  int at_this_weight = 0;
-  for (int k = 0; k < kMostSteps; ++k) {
+  // A slack near its end holds weight / multiplier. The multipliers are those of the weight that
+  // was come from, and so is the curvature: with it a step leads to the new slack, not past it.
+  // Both fall as far as steps go (that is the primal-dual direction).
+  double curvature = from;
+  for (int k = 1; k <= kMostSteps; ++k) {
     const double time = assemble(rate, weight, curvature, newton);
     double decrement = 0.0;
     if (!newton.solve(step, decrement)) return false;
@@ -335,19 +336,10 @@ bool BarrierProblem::solve(SquareRate& rate, double weight, double last_weight) 
     }
     // One tight place shortens the step of the whole section: wait for it, but not for long.
     const double distance = decrement / (weight * time);
-    ++at_this_weight;
-    const bool central =
-        (distance <= 1.0 && length > 0.5) ||
-        (distance <= kStillFar && at_this_weight >= kMostAtOneWeight && time > kSlowly * before);
+    if (distance <= 1.0 && length > 0.5) return true;
+    if (distance <= kStillFar && k >= kMany && time > kSlowly * before) return true;
     before = time;
-    // A slack near its end holds weight / multiplier. Right after a reduction the multiplier is
-    // that of the old weight, and so is the curvature: with it the step leads to the new slack, not
-    // past it (that is the primal-dual direction).
-    curvature = weight;
-    if (!central) continue;
-    if (weight <= last_weight) return true;
-    weight = std::max(last_weight, weight * kReduction);
-    at_this_weight = 0;
+    curvature = weight + (1.0 - length) * (curvature - weight);
   }
   return true;
 }

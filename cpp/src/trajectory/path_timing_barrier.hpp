@@ -37,11 +37,12 @@ class BarrierProblem {
   /// Scales `rate` down until it keeps every limit with some room: where it must be, `rounds`
   /// times, then all of it.
   void make_feasible(SquareRate& rate, int rounds) const;
-  /// Follows the central path from `rate`, which must be strictly feasible.
-  /// @param weight, last_weight first and last weight of the barrier, as a share of time: what is
-  ///        left to gain is about the last weight times two (the limits active in a cell)
+  /// Goes to the central path from `rate`, which must be strictly feasible.
+  /// @param from weight of the barrier for which `rate` is about central; `weight`, if for none
+  /// @param weight the one to come to, as a share of time: what is left to gain is about that times
+  ///        two (the limits active in a cell)
   /// @returns false if the numbers gave out
-  [[nodiscard]] bool solve(SquareRate& rate, double weight, double last_weight);
+  [[nodiscard]] bool solve(SquareRate& rate, double from, double weight);
 
   /// Motion along the cells, C² in time.
   [[nodiscard]] std::vector<TimedSpan> spans(const SquareRate& rate) const {

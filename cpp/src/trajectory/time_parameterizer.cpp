@@ -130,7 +130,7 @@ Timing quickest(const Course& course) {
     problem->set_limit_factors(
         corrections(*problem, rate, course, problem->spans(rate), kUsed, aim));
     // What it has when the numbers give out is a motion too.
-    solved = solved && problem->solve(rate, kLastWeight, kLastWeight);
+    solved = solved && problem->solve(rate, kFirstWeight, kLastWeight);
     if (course.limits_tool())
       solved = solved && press_on_ceilings(*problem, rate, kLastWeight, holds ? kHeld : kPressed);
     Timing timing{holds ? hold_where_it_fits(course, *problem, rate) : problem->spans(rate),

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 #include "viapoint/trajectory/bernstein.hpp"
 #include "viapoint/trajectory/trajectory_piece.hpp"
@@ -14,9 +15,23 @@ namespace viapoint {
 ///
 /// Powers grow by Leibniz' rule and Bernstein products in scaled form (Farouki & Rajan 1988), whose
 /// weights are positive: where u stays in [0, 1] nothing is lost to cancellation.
-/// Fixed capacity, no heap. Real-time: not meant for it. Threads: any.
+/// Those of an order are brought to a common degree when they are first asked for.
+/// Fixed capacity, no heap. Real-time: not meant for it. Threads: one.
 class BernsteinComposition {
  public:
+  /// Bernstein coefficients times C(n, i), between zeros: products are then plain convolutions.
+  /// Degree -1 is zero.
+  struct Scaled {
+    static constexpr std::size_t kPad = 5;
+    int degree = -1;
+    std::array<double, kMaxBernsteinDegree + 1 + 2 * kPad> padded{};
+
+    [[nodiscard]] double* data() { return padded.data() + kPad; }
+    [[nodiscard]] const double* data() const { return padded.data() + kPad; }
+  };
+  /// A polynomial and its first three derivatives, each of its own natural degree.
+  using Jet = std::array<Scaled, 4>;
+
   /// Coefficients of a quintic in u, by power.
   using Path = std::array<double, 6>;
 
@@ -39,10 +54,16 @@ class BernsteinComposition {
   static constexpr int kOrders = 4;
   static constexpr int kPowers = 5;
 
+  /// The power k of u at k - 1, all of one degree.
+  using Powers = std::array<BernsteinPolynomial, kPowers>;
+  [[nodiscard]] const Powers& raised(std::size_t order) const;
+
   int timing_degree_ = 0;
   int path_degree_ = 0;
-  /// [order][k - 1]: the power k of u, at the common degree of its order.
-  std::array<std::array<BernsteinPolynomial, kPowers>, kOrders> powers_;
+  std::array<Jet, kPowers> jets_;  ///< of the power k at k - 1
+  mutable std::array<Powers, kOrders> raised_;
+  mutable std::array<bool, kOrders> is_raised_{};
+  /// [order][k - 1]
   std::array<std::array<double, kPowers>, kOrders> rounding_{};
   std::array<std::array<double, kPowers>, kOrders> magnitude_{};  ///< largest |coefficient|
 };
