@@ -35,8 +35,11 @@ from ._job import Job, RunReport
 from ._knots import insert_knots
 from ._log_files import load_log
 from ._motion import Motion
+from ._playback import Playback
+from ._playback_file import load_recording
 from ._points import PointList
 from ._program import Program
+from ._recording import Recording
 from ._report import Report
 from ._robot import Robot, joint_robot, load_robot
 from ._run_log import RunLog
@@ -60,9 +63,11 @@ __all__ = [
     "Knots",
     "Motion",
     "MotionError",
+    "Playback",
     "PointList",
     "Problem",
     "Program",
+    "Recording",
     "Report",
     "Robot",
     "RunLog",
@@ -82,6 +87,7 @@ __all__ = [
     "joint_deviation",
     "joint_robot",
     "load_log",
+    "load_recording",
     "load_robot",
     "mm",
     "profile",

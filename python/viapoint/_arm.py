@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from types import TracebackType
 from typing import TYPE_CHECKING, Protocol
 from urllib.parse import parse_qs, urlsplit
@@ -14,6 +15,7 @@ from ._arguments import ArrayLike, Vector, number, vector
 from ._job import Execution, Job
 from ._motion import CYCLE, Motion
 from ._program import Program, motion_of
+from ._recording import Recording, record
 from ._robot import Robot, load_robot, require_robot, require_within_limits
 from ._virtual import VirtualLoop
 from .errors import BadArgumentError, StoppedError
@@ -246,6 +248,28 @@ class Arm:
         joints = self.joints
         points.record(name, joints, frame=frame)
         return joints
+
+    def record(self, seconds: float, *, until: Callable[[], bool] | None = None) -> Recording:
+        """Record what the drives measure, once a cycle, while somebody guides the arm.
+
+        Parameters
+        ----------
+        seconds : float
+            How long at most [s].
+        until : callable, optional
+            Called after every sample; recording ends when it returns True. It may jog the arm.
+
+        Returns
+        -------
+        Recording
+            The samples: to fit, save and play.
+
+        Raises
+        ------
+        BadArgumentError
+            Seconds that are no number above 0.
+        """
+        return record(self, seconds, until, self._cycle)
 
 
 def connect(

@@ -1,0 +1,323 @@
+"""Recordings of hand-guided motion: what the drives measured, and smooth paths near it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _session
+from ._arguments import ArrayLike, Vector, number, numbers_of
+from ._playback import Playback, Stage
+from ._robot import Robot, require_robot, require_within_limits
+from ._rotation_vectors import rotation_vectors
+from ._run_log import RunLog
+from ._smoothing import SmoothCurve, reversals, smooth, thinned
+from ._zone import Zone
+from .errors import BadArgumentError, DegenerateCurveError, EmptyProgramError
+
+if TYPE_CHECKING:
+    from ._arm import Arm
+
+_QUICKEST = 0.05
+"""Two reversals nearer than this in time [s] are none that a hand makes."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Recording:
+    """Measured joints over time. Made by `Arm.record`, from a log, or from arrays.
+
+    Attributes
+    ----------
+    robot : Robot
+        The arm that was guided.
+    t : ndarray, (k,)
+        Times, rising [s].
+    q : ndarray, (k, n)
+        Joints as they were measured [rad or m].
+    outputs : ndarray of uint64, (k,)
+        Digital outputs, bit i is output i.
+    """
+
+    robot: Robot
+    t: Vector
+    q: Vector
+    outputs: npt.NDArray[np.uint64]
+
+    @classmethod
+    def of_samples(
+        cls, robot: Robot, t: ArrayLike, q: ArrayLike, outputs: ArrayLike | None = None
+    ) -> Recording:
+        """Take samples from anywhere.
+
+        Parameters
+        ----------
+        robot : Robot
+            The arm.
+        t : array_like, (k,)
+            Times, rising [s]; k at least 2.
+        q : array_like, (k, n)
+            Joints [rad or m].
+        outputs : array_like of int, (k,), optional
+            Digital outputs, bit i is output i. Default: none on.
+
+        Raises
+        ------
+        BadArgumentError
+            Shapes that do not fit, or times that do not rise.
+        """
+        arm = require_robot(robot)
+        times = numbers_of(t, "t")
+        if times.ndim != 1 or len(times) < 2 or not (np.diff(times) > 0.0).all():
+            raise BadArgumentError("t must hold two times or more, each above the one before.")
+        joints = numbers_of(q, "q")
+        if joints.shape != (len(times), arm.joints):
+            raise BadArgumentError(
+                f"q has the shape {joints.shape}; it must be ({len(times)}, {arm.joints})."
+            )
+        bits = np.zeros(len(times), dtype=np.uint64)
+        if outputs is not None:
+            given = np.asarray(outputs)
+            if given.shape != bits.shape or given.dtype.kind not in "iu" or (given < 0).any():
+                raise BadArgumentError(f"outputs must hold {len(times)} integers from 0.")
+            bits = given.astype(np.uint64)
+        return cls(arm, times, joints, bits)
+
+    @classmethod
+    def of_log(cls, log: RunLog) -> Recording:
+        """Take what the drives measured in a run.
+
+        Raises
+        ------
+        BadArgumentError
+            Nothing was measured.
+        """
+        seen = np.isfinite(log.measured).all(axis=1)
+        if seen.sum() < 2:
+            raise BadArgumentError("The log holds nothing that a drive measured.")
+        return cls.of_samples(log.robot, log.samples.t[seen], log.measured[seen], log.outputs[seen])
+
+    def __len__(self) -> int:
+        """Count the samples."""
+        return len(self.t)
+
+    def __repr__(self) -> str:
+        """Robot, number of samples and duration."""
+        return f"<Recording of {self.robot.name}, {len(self)} samples, {self.duration:.3f} s>"
+
+    @property
+    def duration(self) -> float:
+        """From the first sample to the last [s]."""
+        return float(self.t[-1] - self.t[0])
+
+    def fit(self, tolerance: float | Zone, *, angle_tolerance: float = 0.02) -> Playback:
+        """Find a smooth path that passes every sample within the tolerance, and is proven to.
+
+        The path is one of the joints: cubic B-splines with few and smooth spans. It is cut, and
+        the arm stops, where an output changes and where the way goes back on itself. Noise is
+        smoothed away as far as the tolerance allows, so a tolerance of some times the noise makes
+        quick and quiet motions; one below it cannot be kept and is refused.
+
+        Parameters
+        ----------
+        tolerance : float or Zone
+            Largest distance of the tool's point from its place at a sample [m]; or
+            ``vp.joint_deviation(r)``, the largest distance over all joints [rad or m], which is the
+            way for a robot without kinematics.
+        angle_tolerance : float
+            Largest angle of the tool from its orientation at a sample [rad]; not for joints.
+
+        Returns
+        -------
+        Playback
+            The path, its deviations and its tempo: to save and to play.
+
+        Raises
+        ------
+        DegenerateCurveError
+            No smooth path comes within the tolerance; it names the worst sample's time.
+        EmptyProgramError
+            The arm was not moved.
+        JointLimitError, CouplingLimitError
+            A sample lies outside the robot's limits, by its time.
+        BadArgumentError
+            By the argument's name.
+        """
+        measure = _Measure.of(self.robot, tolerance, angle_tolerance)
+        for k in self._outermost():
+            require_within_limits(self.robot, self.q[k], f"the recording at {self.t[k]:.3f} s", [])
+        edges = [0, *(np.flatnonzero(np.diff(self.outputs)) + 1).tolist(), len(self)]
+        stages: list[Stage] = []
+        end: Vector | None = None
+        for begin, stop in pairwise(edges):
+            # The first sample with other outputs still belongs to the way before.
+            made = self._stages(measure, slice(begin, min(stop + 1, len(self))), end)
+            stages += made
+            end = made[-1].control[-1] if made[-1].moves else end
+        if not any(stage.moves for stage in stages):
+            raise EmptyProgramError(
+                f"The arm was moved by less than {4.0:g} times the tolerance.",
+                ways_out=["Record a motion.", "Give a smaller tolerance."],
+            )
+        return Playback(self.robot, tuple(stages), measure.position, measure.angle, measure.joints)
+
+    def _outermost(self) -> list[int]:
+        """Find the samples that reach farthest in each joint and coupled limit, either way."""
+        rows = [self.q, self.q @ np.asarray(self.robot.limits.coupling).T]
+        values = np.hstack(rows)
+        return sorted({*values.argmin(axis=0).tolist(), *values.argmax(axis=0).tolist()})
+
+    def _stages(self, measure: _Measure, part: slice, first: Vector | None) -> list[Stage]:
+        """Fit what lies between two changes of outputs: one stage a way without a reversal."""
+        q, t = self.q[part], self.t[part]
+        outputs = int(self.outputs[part.start])
+        seen = measure.features(q)
+        inner = reversals(seen)
+        self._refuse_shaking(t[inner])
+        turns = [0, *inner, len(q) - 1]
+        stages: list[Stage] = []
+        for begin, end in pairwise(turns):
+            whole = slice(begin, end + 1)
+            chosen = thinned(seen[whole])
+            if len(chosen) < 2:  # nothing but noise about the place before
+                stages.append(Stage.rest(float(t[end] - t[begin]), outputs, q.shape[1]))
+                continue
+            curve = smooth(q[whole], measure.features, measure.shares, first)
+            self._require_near(curve, t[whole])
+            leaves, arrives = _moves_between(seen[whole])
+            position, angle = measure.deviations(curve.points(curve.at), q[whole])
+            stages.append(
+                Stage(
+                    control=curve.control,
+                    outputs=outputs,
+                    before=float(t[begin + leaves] - t[begin]),
+                    moving=float(t[begin + arrives] - t[begin + leaves]),
+                    after=float(t[end] - t[begin + arrives]),
+                    position=position,
+                    angle=angle,
+                )
+            )
+            first = curve.control[-1]
+        return stages
+
+    def _refuse_shaking(self, turns: Vector) -> None:
+        quick = np.flatnonzero(np.diff(turns) < _QUICKEST)
+        if len(quick):
+            time = float(turns[quick[0]])
+            raise DegenerateCurveError(
+                f"The way goes back on itself twice within {_QUICKEST:g} s at {time:.3f} s, "
+                "by more than the tolerance: no hand does, noise does.",
+                time=time,
+                ways_out=["Give a larger tolerance: some times the noise of the samples."],
+            )
+
+    def _require_near(self, curve: SmoothCurve, t: Vector) -> None:
+        worst = int(curve.shares.argmax())
+        if curve.shares[worst] > 1.0:
+            raise DegenerateCurveError(
+                "No smooth path passes every sample within the tolerance: the best is "
+                f"{curve.shares[worst]:.3g} times the tolerance away at {t[worst]:.3f} s.",
+                time=float(t[worst]),
+                ways_out=["Give a larger tolerance: some times the noise of the samples."],
+            )
+
+
+def record(arm: Arm, seconds: float, until: Callable[[], bool] | None, period: float) -> Recording:
+    """Read the drives every `period` [s]; see `Arm.record`."""
+    longest = number(seconds, "seconds", "s", above=0.0)
+    virtual = _session.current().virtual
+    begin = time.monotonic()
+    t, q = [0.0], [arm.joints]
+    while t[-1] < longest and not (until is not None and until()):
+        if virtual:  # time passes there by looking
+            t.append(t[-1] + period)
+        else:
+            time.sleep(max(0.0, begin + len(t) * period - time.monotonic()))
+            t.append(max(time.monotonic() - begin, t[-1] + 1e-6))
+        q.append(arm.joints)
+    if len(t) < 2:
+        t.append(period)
+        q.append(arm.joints)
+    return Recording.of_samples(arm.robot, t, q)
+
+
+def _moves_between(seen: Vector) -> tuple[int, int]:
+    """First and last sample beyond a tolerance of the ends of the way: before and after, rest."""
+    away_from_begin = np.linalg.norm(seen - seen[:5].mean(axis=0), axis=1) > 1.0
+    away_from_end = np.linalg.norm(seen - seen[-5:].mean(axis=0), axis=1) > 1.0
+    leaves = int(np.argmax(away_from_begin))
+    arrives = len(seen) - 1 - int(np.argmax(away_from_end[::-1]))
+    return leaves, max(arrives, leaves + 1)
+
+
+@dataclass(frozen=True)
+class _Measure:
+    """What distance is: of the tool, or over all joints.
+
+    Attributes
+    ----------
+    position, angle : float or None
+        Tolerances at the tool [m], [rad].
+    joints : float or None
+        Instead: over all joints [rad or m].
+    """
+
+    robot: Robot
+    position: float | None
+    angle: float | None
+    joints: float | None
+
+    @classmethod
+    def of(cls, robot: Robot, tolerance: float | Zone, angle: float) -> _Measure:
+        if isinstance(tolerance, Zone):
+            if tolerance.kind != "joint_deviation":
+                raise BadArgumentError(
+                    f"tolerance is {tolerance!r}; it must be a distance [m] or "
+                    "vp.joint_deviation(…)."
+                )
+            return cls(robot, None, None, number(tolerance.size, "tolerance", "rad", above=0.0))
+        if not robot.has_kinematics:
+            raise BadArgumentError(
+                f'The robot "{robot.name}" has no kinematics: its tool has no place.',
+                ways_out=["Give the tolerance in joints: fit(vp.joint_deviation(0.01))."],
+            )
+        return cls(
+            robot,
+            number(tolerance, "tolerance", "m", above=0.0),
+            number(angle, "angle_tolerance", "rad", above=0.0),
+            None,
+        )
+
+    def features(self, q: Vector) -> Vector:
+        if self.position is None or self.angle is None:
+            return q / (self.joints or 1.0)
+        scale = np.where(self.robot.prismatic, self.position, self.angle)
+        places = self.robot.fk(q)[:, :3, 3] / self.position
+        return np.hstack([places, q / scale])
+
+    def shares(self, path: Vector, samples: Vector) -> Vector:
+        if self.position is None or self.angle is None:
+            apart: Vector = np.linalg.norm(path - samples, axis=1) / (self.joints or 1.0)
+            return apart
+        off, turned = self._apart(path, samples)
+        larger: Vector = np.maximum(off / self.position, turned / self.angle)
+        return larger
+
+    def deviations(self, path: Vector, samples: Vector) -> tuple[float, float]:
+        """Largest distance [m] (over joints: [rad or m]) and angle [rad]."""
+        if self.position is None:
+            return float(np.linalg.norm(path - samples, axis=1).max()), 0.0
+        off, turned = self._apart(path, samples)
+        return float(off.max()), float(turned.max())
+
+    def _apart(self, path: Vector, samples: Vector) -> tuple[Vector, Vector]:
+        here, there = self.robot.fk(path), self.robot.fk(samples)
+        off: Vector = np.linalg.norm(here[:, :3, 3] - there[:, :3, 3], axis=1)
+        turn = rotation_vectors(here[:, :3, :3] @ np.swapaxes(there[:, :3, :3], 1, 2))
+        turned: Vector = np.linalg.norm(turn, axis=1)
+        return off, turned
