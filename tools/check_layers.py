@@ -21,6 +21,7 @@ MAY_INCLUDE: dict[str, frozenset[str]] = {
     "planning": frozenset({"core", "kinematics", "profile", "path", "trajectory", "program"}),
     "realtime": frozenset({"core", "profile"}),
     "drives": frozenset({"core", "realtime"}),
+    "remote": frozenset({"core", "realtime", "trajectory"}),
 }
 # The single headers that a module may include on top.
 ALSO: dict[str, frozenset[str]] = {

@@ -6,8 +6,9 @@ moves to a hundred thousand), ``insertion`` (tool curves as joints, every
 proof checked), ``kinematics`` (inverse kinematics), ``tracking`` (tool lines followed pose by
 pose), all in C++ by viapoint-bench; ``sample`` (states of a motion into numpy arrays) and
 ``programs`` (random programs planned and proven) in Python;
-``profiles`` (state to state) beside Ruckig, ``paths`` (timing along paths, corners) beside
-toppra, copp and justblend. Each has its place in tools/benches.
+``remote`` (a controller in a process of its own: calls, heartbeat, latency while clients
+misbehave); ``profiles`` (state to state) beside Ruckig, ``paths`` (timing along paths, corners)
+beside toppra, copp and justblend. Each has its place in tools/benches.
 """
 
 import argparse
@@ -16,11 +17,11 @@ import json
 import sys
 from pathlib import Path
 
-from benches import core, documents, kinematics, paths, profiles, programs, sampling, tables
+from benches import core, documents, kinematics, paths, profiles, programs, remote, sampling, tables
 from benches.machine import ROOT, machine
 from benches.tables import Row
 
-SUBJECTS = (*core.SUBJECTS, "sample", "programs", "profiles", "paths")
+SUBJECTS = (*core.SUBJECTS, "sample", "programs", "remote", "profiles", "paths")
 BY_THE_MILLION = ("profiles", "programs")
 PROGRAMS = 60
 
@@ -42,6 +43,8 @@ def measure(subject: str, options: argparse.Namespace) -> tuple[list[Row], list[
         return sampling.measure(quick=options.quick), []
     if subject == "paths":
         return paths.measure(options.program.parent, quick=options.quick), []
+    if subject == "remote":
+        return remote.measure(quick=options.quick), []
     if subject == "programs":
         return programs.measure(options.problems or PROGRAMS, quick=options.quick), []
     if options.problems:

@@ -114,6 +114,7 @@ update_package() {
   local site
   site=$("$venv/bin/python" -c 'import sysconfig; print(sysconfig.get_path("platlib"))')
   install_changed "$tree"/cpp/bindings/_core*.so "$site/viapoint"
+  install_changed "$tree/cpp/controller/controller.binpb" "$site/viapoint"
   install_changed "$tree/cpp/controller/viapoint-controller" "$venv/bin"
   local robot
   for robot in "$root"/python/viapoint/robots/*; do

@@ -263,6 +263,12 @@ void bind_robot(py::module_& m) {
       "the "
       "tool.");
   m.def(
+      "robot_from_yaml",
+      [](const std::string& text, const std::string& source) {
+        return RobotHandle{RobotModel::make(description_from_yaml(text, source))};
+      },
+      py::arg("text"), py::arg("source"), "The robot that to_yaml wrote; source: for errors.");
+  m.def(
       "joint_robot",
       [](const JointLimits& limits) { return RobotHandle{RobotModel::joint_robot(limits)}; },
       py::arg("limits"), "Joints with limits and no kinematics.");

@@ -9,6 +9,7 @@ namespace viapoint::controller {
 
 /// What the command line asks for.
 struct Options {
+  std::string config;   ///< path of a configuration file to serve by; then the rest is empty
   std::string robot;    ///< built-in name, or path of a .yaml or .urdf
   std::string program;  ///< path of a program file
   std::string log;      ///< path of the log to write

@@ -18,4 +18,10 @@ bool StopSignals::arrived() {
   return sigtimedwait(&signals_, nullptr, &at_once) > 0;
 }
 
+void StopSignals::wait() {
+  while (sigwaitinfo(&signals_, nullptr) < 0) {
+    // Interrupted by a signal that is not ours.
+  }
+}
+
 }  // namespace viapoint::controller

@@ -16,6 +16,8 @@ class StopSignals {
 
   /// True when one has come since the last call.
   [[nodiscard]] bool arrived();
+  /// Waits for one.
+  void wait();
 
  private:
   sigset_t signals_{}, before_{};

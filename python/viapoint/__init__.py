@@ -45,6 +45,7 @@ from ._robot import Robot, joint_robot, load_robot
 from ._run_log import RunLog
 from ._samples import Samples
 from ._simulation import simulate, simulate_jog
+from ._tls import TlsFiles
 from ._units import deg, mm
 from ._zone import Zone, deviation, joint_deviation, radius
 from .errors import MotionError
@@ -74,6 +75,7 @@ __all__ = [
     "RunReport",
     "Samples",
     "Singularity",
+    "TlsFiles",
     "Zone",
     "__version__",
     "connect",

@@ -17,6 +17,7 @@ from ._motion import CYCLE, Motion
 from ._program import Program, motion_of
 from ._recording import Recording, record
 from ._robot import Robot, load_robot, require_robot, require_within_limits
+from ._tls import TlsFiles
 from ._virtual import VirtualLoop
 from .errors import BadArgumentError, StoppedError
 from .frames import Frame
@@ -214,6 +215,11 @@ class Arm:
         return self._loop.busy
 
     @property
+    def job(self) -> Job | None:
+        """The run under way, or the last one; None before the first."""
+        return self._jobs[-1] if self._jobs else None
+
+    @property
     def fault(self) -> str:
         """What has failed, in a sentence; empty while nothing has. Connect again after it."""
         return self._loop.fault
@@ -280,6 +286,8 @@ def connect(
     cycle: float = CYCLE,
     tool_speed: float | None = None,
     workspace: tuple[ArrayLike, ArrayLike] | None = None,
+    watch: bool = False,
+    tls: TlsFiles | None = None,
 ) -> Arm:
     """Connect to an arm.
 
@@ -287,7 +295,9 @@ def connect(
     ----------
     url : str
         ``"sim://puma560"``: an arm simulated in this process, under the 2 ms C++ loop. A start may
-        follow: ``"sim://puma560?start=0,0.5,0,0,0,0"`` [rad or m].
+        follow: ``"sim://puma560?start=0,0.5,0,0,0,0"`` [rad or m]. ``"tcp://127.0.0.1:7420"``: the
+        arm of a ``viapoint-controller`` in another process, which this script then has control of;
+        its configuration says what the robot, the cycle and the guard are.
     start : array_like, (n,), optional
         Joints where the simulated arm stands [rad or m]. Default: all zero.
     robot : Robot, optional
@@ -299,14 +309,22 @@ def connect(
         that goes beyond it is stopped on its path, and the arm has to be connected anew.
     workspace : (array_like (3,), array_like (3,)), optional
         The guard's box: least and greatest x, y, z of the tool point [m].
+    watch : bool
+        Only look at the arm of a controller, and leave control to others.
+    tls : TlsFiles, optional
+        For a controller beyond this machine.
 
     Returns
     -------
     Arm
-        For a ``with`` block.
+        For a ``with`` block; a `RemoteArm` of a controller.
 
     Raises
     ------
+    NotInControlError
+        Another program has control of the controller's arm.
+    UnconnectedError
+        There is no controller at that address, or none that answers.
     BadArgumentError
         Not such a url, a start that does not fit, a cycle that is not 0.1 ms to 1 s, limits of the
         tool for a robot without kinematics, a workspace whose ends are not in order.
@@ -321,10 +339,17 @@ def connect(
         require_robot(robot)
     period = number(cycle, "cycle", "s", least=1e-4, most=1.0)
     parts = urlsplit(url)
+    if parts.scheme == "tcp":
+        told: dict[str, object] = {"start": start, "tool_speed": tool_speed, "workspace": workspace}
+        if cycle != CYCLE:
+            told["cycle"] = cycle
+        return _connect_remote(url, told, robot, watch, tls)
+    if watch or tls is not None:
+        raise BadArgumentError('watch and tls are for a controller: connect("tcp://…").')
     if parts.scheme != "sim" or not (parts.netloc or parts.path):
         raise BadArgumentError(
-            f'url is "{url}"; this version connects to "sim://<robot>" only.',
-            ways_out=['For example connect("sim://puma560").'],
+            f'url is "{url}"; it must be "sim://<robot>" or "tcp://<host>:<port>".',
+            ways_out=['For example connect("sim://puma560"), or connect("tcp://127.0.0.1:7420").'],
         )
     arm_robot = load_robot(parts.netloc + parts.path) if robot is None else robot
     joints = np.zeros(arm_robot.joints)
@@ -340,6 +365,28 @@ def connect(
         arm_robot._core, joints, cycle=period, tool_speed=speed, box_min=low, box_max=high
     )
     return Arm(arm_robot, loop, period)
+
+
+def _connect_remote(
+    url: str,
+    told: dict[str, object],
+    robot: Robot | None,
+    watch: bool,
+    tls: TlsFiles | None,
+) -> Arm:
+    for name, value in told.items():
+        if value is not None:
+            raise BadArgumentError(
+                f"{name} is for a simulated arm; a controller's is in its configuration."
+            )
+    try:
+        from . import _remote_arm
+    except ImportError as error:
+        raise BadArgumentError(
+            f"Connecting to a controller needs what is not installed: {error}.",
+            ways_out=['Install it: pip install "viapoint[remote]".'],
+        ) from None
+    return _remote_arm.connect_remote(url, robot, watch, tls)
 
 
 def _guarded(

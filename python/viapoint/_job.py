@@ -10,7 +10,7 @@ from . import _core, _session
 from ._arguments import number
 from ._motion import CYCLE, Motion
 from ._run_log import RunLog
-from .errors import BadArgumentError, DriveFaultError
+from .errors import BadArgumentError, DriveFaultError, NotInControlError
 
 ENDED = ("finished", "stopped", "fault")
 _SLICE = 0.05
@@ -146,7 +146,9 @@ class Job:
         BadArgumentError
             A timeout that is no number, negative or not finite.
         DriveFaultError
-            The drive failed.
+            The drive failed, or the controller does not answer any more.
+        NotInControlError
+            Control of an arm in another process was lost: the run waits there, paused.
         """
         left = math.inf if timeout is None else number(timeout, "timeout", "s", least=0.0)
         session = _session.current()
@@ -163,7 +165,7 @@ class Job:
                 left -= part
                 if left <= 0.0:
                     return False
-        except DriveFaultError:
+        except (DriveFaultError, NotInControlError):
             self._seen_to_end = True
             raise
         except BaseException:

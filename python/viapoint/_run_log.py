@@ -98,9 +98,18 @@ class RunLog:
     @classmethod
     def of(cls, core: _core.Log, motion: Motion, period: float) -> RunLog:
         """Take over what the controller kept of a run of `motion`."""
-        return cls(
-            **core.columns(), robot=motion.robot, period=period, core=core, tools=motion.tools
-        )
+        return cls.of_robot(core, motion.robot, period, motion.tools)
+
+    @classmethod
+    def of_robot(
+        cls,
+        core: _core.Log,
+        robot: Robot,
+        period: float,
+        tools: tuple[tuple[int, Robot], ...] = (),
+    ) -> RunLog:
+        """Take over what a controller kept of a run."""
+        return cls(**core.columns(), robot=robot, period=period, core=core, tools=tools)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the log; `load_log` reads it back to the last bit.

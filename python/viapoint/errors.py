@@ -42,6 +42,7 @@ __all__ = [
     "NotARotationError",
     "NotAtRestError",
     "NotAtStartError",
+    "NotInControlError",
     "OtherRobotWarning",
     "OutsideLimitsError",
     "PoseCorrectedError",
@@ -51,6 +52,7 @@ __all__ = [
     "RunError",
     "SingularError",
     "StoppedError",
+    "UnconnectedError",
     "UncontrolledError",
     "UnreachableError",
     "VelocityLimitError",
@@ -266,6 +268,14 @@ class BusyError(RunError):
     """A run is already under way."""
 
     code = "busy"
+
+
+class NotInControlError(BusyError):
+    """Somebody else has control of the arm, or it was lost."""
+
+
+class UnconnectedError(DriveFaultError):
+    """A controller that cannot be reached, or does not answer."""
 
 
 class PoseCorrectedWarning(UserWarning):

@@ -3,7 +3,13 @@
 from __future__ import annotations
 
 import json
+import re
+import shutil
 import signal
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -61,3 +67,60 @@ def everything() -> vp.Motion:
     program.movel(moved(-0.06, 0.05, -0.05), zone="fine")
     program.movec(moved(-0.11, 0, -0.05), moved(-0.06, -0.05, -0.05), zone=vp.joint_deviation(0.02))
     return program.movel(moved(-0.06, 0.05, 0)).wait(0.1).plan()
+
+
+@dataclass
+class Served:
+    """A viapoint-controller process that serves an arm."""
+
+    process: subprocess.Popen[str]
+    port: int
+
+    @property
+    def url(self) -> str:
+        return f"tcp://127.0.0.1:{self.port}"
+
+    def end(self) -> int:
+        """Ask it to end, as a service's manager does, and return its exit code."""
+        self.process.terminate()
+        return self.process.wait(timeout=60)
+
+
+def controller_executable() -> str:
+    beside = Path(sys.executable).parent / "viapoint-controller"
+    found = str(beside) if beside.exists() else shutil.which("viapoint-controller")
+    if found is None:
+        pytest.skip("viapoint-controller is not installed: nothing of it was tested")
+    return found
+
+
+@pytest.fixture
+def serve(tmp_path: Path) -> Iterator[Callable[..., Served]]:
+    """Start controllers with the configuration given, on a port that the system chooses.
+
+    The heartbeat is long unless told otherwise, so that a loaded machine loses no beat.
+    """
+    executable = controller_executable()
+    processes: list[subprocess.Popen[str]] = []
+
+    def start(**keys: object) -> Served:
+        config = tmp_path / f"controller{len(processes)}.yaml"
+        told = {"robot": "puma560", "listen": "127.0.0.1:0", "heartbeat": 20.0} | keys
+        config.write_text(json.dumps(told), encoding="utf-8")  # which is YAML, too
+        process = subprocess.Popen(
+            [executable, "--config", str(config)], stderr=subprocess.PIPE, text=True
+        )
+        processes.append(process)
+        assert process.stderr is not None
+        heard = []
+        for line in process.stderr:
+            heard.append(line)
+            if found := re.search(r"is served at \S+:(\d+)", line):
+                return Served(process, int(found.group(1)))
+        raise AssertionError("the controller did not start: " + "".join(heard))
+
+    yield start
+    for process in processes:
+        if process.poll() is None:
+            process.kill()
+        process.communicate(timeout=60)

@@ -26,7 +26,7 @@ def test_the_start_may_stand_in_the_url():
     ("url", "arguments", "says"),
     [
         ("puma560", {}, "sim://"),
-        ("tcp://host:1", {}, "sim://"),
+        ("tcp://host", {}, "tcp://<host>"),
         ("sim://", {}, "sim://"),
         ("sim://puma560?begin=0", {}, "start"),
         ("sim://puma560?start=0,x", {}, "start"),

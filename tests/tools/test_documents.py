@@ -11,7 +11,10 @@ import pytest
 ROOT = Path(__file__).parents[2]
 DOCUMENTS = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
 SCRIPT = re.compile(r"^```python\n(.*?)^```", re.MULTILINE | re.DOTALL)
-RUN_ELSEWHERE = {"gallery.md"}  # test_gallery.py: many blocks, one process
+RUN_ELSEWHERE = {
+    "gallery.md",  # test_gallery.py: many blocks, one process
+    "controller.md",  # test_remote.py, test_remote_tls.py: each beside a controller
+}
 LINK = re.compile(r"\]\((?!https?:)([^)#\s]+)(?:#[^)]*)?\)")
 
 

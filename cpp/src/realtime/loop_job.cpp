@@ -59,6 +59,11 @@ std::vector<LogRecord> LoopJob::log() const {
   return log_.records();
 }
 
+std::vector<LogRecord> LoopJob::log(std::uint64_t from, std::size_t count) const {
+  const std::lock_guard lock(mutex_);
+  return log_.records(from, count);
+}
+
 RunReport LoopJob::report() const {
   const std::lock_guard lock(mutex_);
   RunReport report = log_.report();

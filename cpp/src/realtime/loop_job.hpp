@@ -35,6 +35,7 @@ class LoopJob final : public Job {
   [[nodiscard]] std::uint64_t overruns() const override { return motion_.overruns; }
   [[nodiscard]] int move() const override { return motion_.move; }
   [[nodiscard]] std::vector<LogRecord> log() const override;
+  [[nodiscard]] std::vector<LogRecord> log(std::uint64_t from, std::size_t count) const override;
   [[nodiscard]] RunReport report() const override;
 
   /// What crosses the real-time boundary.

@@ -1,5 +1,7 @@
 #include "realtime/run_log.hpp"
 
+#include <algorithm>
+
 namespace viapoint {
 namespace {
 
@@ -32,6 +34,14 @@ bool RunLog::rests_on(const LogRecord& record) const {
 }
 
 std::vector<LogRecord> RunLog::records() const { return {records_.begin(), records_.end()}; }
+
+std::vector<LogRecord> RunLog::records(std::uint64_t from, std::size_t count) const {
+  const auto first = std::lower_bound(
+      records_.begin(), records_.end(), from,
+      [](const LogRecord& record, std::uint64_t cycle) { return record.cycle < cycle; });
+  const auto left = static_cast<std::size_t>(records_.end() - first);
+  return {first, first + static_cast<std::ptrdiff_t>(std::min(count, left))};
+}
 
 RunReport RunLog::report() const {
   RunReport report;

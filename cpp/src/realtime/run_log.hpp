@@ -23,6 +23,8 @@ class RunLog {
 
   void append(const LogRecord& record);
   [[nodiscard]] std::vector<LogRecord> records() const;
+  /// At most `count` of them, from cycle `from` on. O(log records + count)
+  [[nodiscard]] std::vector<LogRecord> records(std::uint64_t from, std::size_t count) const;
   /// Cycles, rested cycles, lost records, times and quantiles. O(1), whatever the run's length.
   [[nodiscard]] RunReport report() const;
 

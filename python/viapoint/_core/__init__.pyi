@@ -68,6 +68,7 @@ __all__: list[str] = [
     "plan",
     "profile",
     "read_file",
+    "robot_from_yaml",
     "run_states",
     "simulate",
     "simulate_jog",
@@ -1444,6 +1445,11 @@ def plan(robot: RobotModel, program: MotionProgram) -> PlannedMotion:
 def read_file(path: str) -> str:
     """
     The whole text of a file.
+    """
+
+def robot_from_yaml(text: str, source: str) -> RobotModel:
+    """
+    The robot that to_yaml wrote; source: for errors.
     """
 
 def run_states() -> list[str]:

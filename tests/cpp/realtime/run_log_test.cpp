@@ -116,6 +116,24 @@ TEST(RunLog, AFullLogKeepsTheNewestRecordsAndCountsTheOthers) {
   EXPECT_THROW(virtual_loop(options), MotionError);
 }
 
+TEST(RunLog, IsReadInPartsByTheCycle) {
+  const auto loop = virtual_loop();
+  const auto job = loop->run(move_to(1.0));
+  ASSERT_TRUE(job->wait(60.0));
+  const std::vector<LogRecord> whole = job->log();
+  std::vector<LogRecord> joined;
+  for (;;) {
+    const std::uint64_t from = joined.empty() ? 0 : joined.back().cycle + 1;
+    const std::vector<LogRecord> part = job->log(from, 7);
+    if (part.empty()) break;
+    ASSERT_LE(part.size(), 7U);
+    joined.insert(joined.end(), part.begin(), part.end());
+  }
+  ASSERT_EQ(joined.size(), whole.size());
+  for (size_t k = 0; k < whole.size(); ++k) EXPECT_EQ(joined[k].cycle, whole[k].cycle);
+  EXPECT_TRUE(job->log(0, 0).empty());
+}
+
 TEST(RunLog, QuantilesAreThoseOfTheCyclesWithinOneInSixtyFour) {
   const auto quantile = [](std::vector<std::int64_t> values, std::size_t percent) {
     std::ranges::sort(values);

@@ -76,6 +76,8 @@ class Job {
   /// The cycles so far, but for rests from their third cycle on and for lost records: report()
   /// counts both. Complete after wait(). Copies the log.
   [[nodiscard]] virtual std::vector<LogRecord> log() const = 0;
+  /// A part of the same: at most `count` records, from cycle `from` on.
+  [[nodiscard]] virtual std::vector<LogRecord> log(std::uint64_t from, std::size_t count) const = 0;
   /// Takes as long for a long run as for a short one.
   [[nodiscard]] virtual RunReport report() const = 0;
 };

@@ -38,11 +38,19 @@ TEST(Options, MistakesEndWithTheCodeOfUsage) {
            {"--robot", "r", "--program", "p"},
            {"--robot", "r", "--program", "p", "--log", "l", "--cycle-ms", "0"},
            {"--robot", "r", "--program", "p", "--log", "l", "--cycle-ms", "nan"},
-           {"--robot", "r", "--program", "p", "--log", "l", "--faster"}}) {
+           {"--robot", "r", "--program", "p", "--log", "l", "--faster"},
+           {"--config", "c", "--robot", "r", "--program", "p", "--log", "l"},
+           {"--config", "c", "--virtual"}}) {
     const CommandLine line = read(bad);
     EXPECT_FALSE(line.options);
     EXPECT_EQ(line.exit_code, kUsage);
   }
+}
+
+TEST(Options, AConfigurationIsEnough) {
+  const CommandLine line = read({"--config", "c.yaml"});
+  ASSERT_TRUE(line.options);
+  EXPECT_EQ(line.options->config, "c.yaml");
 }
 
 TEST(Options, HelpIsNoMistake) {

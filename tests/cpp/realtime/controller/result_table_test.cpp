@@ -21,6 +21,7 @@ class EndedJob final : public Job {
   [[nodiscard]] std::uint64_t overruns() const override { return report_.overruns; }
   [[nodiscard]] int move() const override { return 0; }
   [[nodiscard]] std::vector<LogRecord> log() const override { return {}; }
+  [[nodiscard]] std::vector<LogRecord> log(std::uint64_t, std::size_t) const override { return {}; }
   [[nodiscard]] RunReport report() const override { return report_; }
 
  private:

@@ -1,0 +1,169 @@
+#include "controller/config.hpp"
+
+#include <arpa/inet.h>
+#include <yaml-cpp/yaml.h>
+
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <utility>
+
+#include "kinematics/yaml_map.hpp"
+#include "viapoint/core/error.hpp"
+#include "viapoint/core/number_text.hpp"
+
+namespace viapoint::controller {
+namespace {
+
+/// A number in a range. @throws MotionError with key and range
+double number_in(const YamlValue& value, double least, double most, const char* unit) {
+  const double number = value.number();
+  if (!(number >= least && number <= most)) {
+    value.refuse("is " + number_text(number) + "; allowed are " + number_text(least) + " to " +
+                 number_text(most) + ' ' + unit);
+  }
+  return number;
+}
+
+std::chrono::nanoseconds time_in(const YamlValue& value, double least, double most) {
+  return std::chrono::nanoseconds(std::llround(number_in(value, least, most, "s") * 1e9));
+}
+
+/// "127.0.0.1:7420", "[::1]:7420".
+void read_address(const YamlValue& value, Config& config) {
+  const std::string text = value.text();
+  const std::size_t colon = text.rfind(':');
+  const std::string host = text.substr(0, colon == std::string::npos ? 0 : colon);
+  const std::string port = text.substr(colon + 1);
+  const bool is_port = !port.empty() && port.size() <= 5 &&
+                       port.find_first_not_of("0123456789") == std::string::npos &&
+                       std::stoi(port) <= 65535;
+  const bool is_v6 = host.size() > 2 && host.front() == '[' && host.back() == ']';
+  const std::string bare = is_v6 ? host.substr(1, host.size() - 2) : host;
+  in6_addr parsed{};
+  // Numbers only: what a name leads to would be known only when it is too late to refuse it.
+  if (!is_port || inet_pton(is_v6 ? AF_INET6 : AF_INET, bare.c_str(), &parsed) != 1) {
+    value.refuse("\"" + text + "\" is no address and port in numbers",
+                 {"for example 127.0.0.1:7420, or [::1]:7420"});
+  }
+  config.host = host;
+  config.port = std::stoi(port);
+}
+
+void read_workspace(const YamlValue& value, GuardOptions& guard) {
+  YamlMap map(value);
+  const std::vector<double> least = map.at("min", "min: [x, y, z]").numbers(3);
+  const std::vector<double> most = map.at("max", "max: [x, y, z]").numbers(3);
+  map.finish({"min", "max"});
+  for (int i = 0; i < 3; ++i) {
+    const auto axis = static_cast<size_t>(i);
+    if (!(least[axis] < most[axis])) value.refuse("max must be beyond min on every axis");
+    guard.box_min[i] = least[axis];
+    guard.box_max[i] = most[axis];
+  }
+}
+
+TlsFiles read_tls(const YamlValue& value) {
+  YamlMap map(value);
+  TlsFiles files;
+  files.authority = map.at("authority", "authority: FILE, who signs clients").text();
+  files.certificate = map.at("certificate", "certificate: FILE, the controller's own").text();
+  files.key = map.at("key", "key: FILE, to the certificate").text();
+  map.finish({"authority", "certificate", "key"});
+  return files;
+}
+
+void read_drive(const YamlValue& value) {
+  const std::string drive = value.text();
+  if (drive != "simulated") {
+    value.refuse("\"" + drive + "\" is no drive", {"there is \"simulated\""});
+  }
+}
+
+void read_start(const YamlValue& value, Config& config) {
+  const std::vector<double> start = value.numbers(-1);
+  if (start.empty() || start.size() > static_cast<size_t>(kMaxJoints)) {
+    value.refuse("has " + std::to_string(start.size()) + " values; a robot has 1 to " +
+                 std::to_string(kMaxJoints) + " joints");
+  }
+  config.start =
+      Eigen::Map<const Eigen::VectorXd>(start.data(), static_cast<Eigen::Index>(start.size()));
+  if (!config.start.allFinite()) value.refuse("has a value that is not finite");
+}
+
+Config read(YamlMap map) {
+  Config config;
+  config.robot = map.at("robot", "robot: puma560").text();
+  if (map.has("drive")) read_drive(map.at("drive"));
+  if (map.has("start")) read_start(map.at("start"), config);
+  if (map.has("cycle")) config.cycle = time_in(map.at("cycle"), 1e-4, 1.0);
+  if (map.has("heartbeat")) config.heartbeat = time_in(map.at("heartbeat"), 0.02, 60.0);
+  if (map.has("tool_speed")) {
+    config.guard.tool_speed = number_in(map.at("tool_speed"), 0.0, 1e6, "m/s");
+  }
+  if (map.has("workspace")) read_workspace(map.at("workspace"), config.guard);
+  if (map.has("tls")) config.tls = read_tls(map.at("tls"));
+  if (map.has("logs")) config.logs = map.at("logs").text();
+  if (map.has("listen")) {
+    read_address(map.at("listen"), config);
+    if (!config.is_loopback() && !config.tls) {
+      map.at("listen").refuse(
+          "other machines could reach the arm there, and nobody would ask who they are",
+          {"listen on 127.0.0.1 or [::1]", "give \"tls\": authority, certificate and key"});
+    }
+  }
+  map.finish({"robot", "drive", "start", "listen", "cycle", "heartbeat", "tool_speed", "workspace",
+              "tls", "logs"});
+  return config;
+}
+
+[[noreturn]] void refuse_file(const std::string& path, const std::string& message,
+                              std::optional<int> line = std::nullopt) {
+  Problem problem;
+  problem.code = ErrorCode::kFile;
+  problem.file = path;
+  problem.line = line;
+  problem.message = message;
+  throw MotionError(std::move(problem));
+}
+
+}  // namespace
+
+bool Config::is_loopback() const { return host.starts_with("127.") || host == "[::1]"; }
+
+Config config_from_yaml(const std::string& text, const std::string& source) {
+  try {
+    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
+    if (documents.size() != 1) {
+      refuse_file(source, "holds " + std::to_string(documents.size()) + " documents, not one");
+    }
+    return read(YamlMap(YamlValue(documents.front(), source, "")));
+  } catch (const YAML::Exception& error) {
+    refuse_file(source, "is no YAML: " + error.msg, error.mark.line + 1);
+  } catch (const MotionError& error) {
+    // The reader is that of robot files.
+    Problem problem = error.problem();
+    problem.code = ErrorCode::kFile;
+    throw MotionError(std::move(problem));
+  }
+}
+
+Config load_config(const std::string& path) {
+  constexpr std::uintmax_t kMostBytes = 1 << 20;
+  std::error_code unknown;
+  if (std::filesystem::is_regular_file(path, unknown) &&
+      std::filesystem::file_size(path, unknown) > kMostBytes) {
+    refuse_file(path, "is no configuration: it has more than 1 MiB");
+  }
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  if (!file || !(text << file.rdbuf())) {
+    refuse_file(path, std::string("the configuration cannot be read: ") + std::strerror(errno));
+  }
+  return config_from_yaml(text.str(), path);
+}
+
+}  // namespace viapoint::controller

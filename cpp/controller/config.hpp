@@ -1,0 +1,42 @@
+/// @file
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <string>
+
+#include "viapoint/core/joint_vector.hpp"
+#include "viapoint/realtime/guard.hpp"
+
+namespace viapoint::controller {
+
+/// The three files of mutual TLS, PEM each.
+struct TlsFiles {
+  std::string authority;    ///< what clients' certificates have to be signed by
+  std::string certificate;  ///< the controller's own
+  std::string key;          ///< to it
+};
+
+/// What the configuration file says (docs/controller.md).
+struct Config {
+  std::string robot;  ///< built-in name, or path of a .yaml or .urdf
+  std::string host = "127.0.0.1";
+  int port = 7420;
+  std::chrono::nanoseconds cycle{2'000'000};
+  std::chrono::nanoseconds heartbeat{100'000'000};
+  JointVector start;   ///< where the simulated drive stands [rad or m]; empty: at zero
+  GuardOptions guard;  ///< tool speed and workspace; its kinematics come with the robot
+  std::optional<TlsFiles> tls;
+  std::string logs;  ///< folder for the log of every run; empty: none is written
+
+  /// True where only programs on this machine can connect.
+  [[nodiscard]] bool is_loopback() const;
+};
+
+/// @throws MotionError(kFile) with file, line and key: what is unknown, missing, there twice or no
+///   such value; an address beyond this machine without TLS
+[[nodiscard]] Config load_config(const std::string& path);
+/// The same of the text of a file; `source` names it in errors.
+[[nodiscard]] Config config_from_yaml(const std::string& text, const std::string& source);
+
+}  // namespace viapoint::controller

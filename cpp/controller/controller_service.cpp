@@ -1,0 +1,182 @@
+#include "controller/controller_service.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <exception>
+#include <string>
+#include <utility>
+
+#include "controller/wire.hpp"
+#include "viapoint/kinematics/robot_description.hpp"
+#include "viapoint/remote/control_seat.hpp"
+
+namespace viapoint::controller {
+namespace {
+
+constexpr std::size_t kMostName = 200;
+constexpr std::size_t kMostRecords = 1000;
+
+double seconds(std::chrono::nanoseconds time) {
+  return std::chrono::duration<double>(time).count();
+}
+
+/// The problem goes with the status, for clients that want more than its text.
+void tell(const Problem& problem, grpc::ServerContext& context) {
+  context.AddTrailingMetadata("viapoint-problem-bin", wire_of(problem).SerializeAsString());
+}
+
+/// Runs a call; what it throws is its refusal.
+template <typename Call>
+grpc::Status answer(grpc::ServerContext* context, const Call& call) {
+  try {
+    call();
+    return grpc::Status::OK;
+  } catch (const NotInControl& error) {
+    tell(error.problem(), *context);
+    return {grpc::StatusCode::PERMISSION_DENIED, error.problem().describe()};
+  } catch (const MotionError& error) {
+    tell(error.problem(), *context);
+    return status_of(error.problem());
+  } catch (const std::exception& error) {
+    spdlog::error("a call failed: {}", error.what());
+    Problem problem;
+    problem.code = ErrorCode::kInternal;
+    problem.message = std::string("the controller could not answer: ") + error.what();
+    tell(problem, *context);
+    return status_of(problem);
+  }
+}
+
+/// Text that people will read: bounded, and nothing in it that acts on a terminal.
+std::string name_of(const std::string& name) {
+  if (name.size() > kMostName) {
+    throw MotionError(ErrorCode::kBadArgument, "a name has " + std::to_string(name.size()) +
+                                                   " characters; allowed are " +
+                                                   std::to_string(kMostName));
+  }
+  std::string shown = name;
+  std::replace_if(
+      shown.begin(), shown.end(),
+      [](char letter) { return static_cast<unsigned char>(letter) < ' ' || letter == '\x7f'; },
+      '?');
+  return shown;
+}
+
+}  // namespace
+
+ControllerService::ControllerService(ArmHost& host, RobotPtr robot, std::chrono::nanoseconds cycle,
+                                     std::chrono::nanoseconds heartbeat)
+    : host_(host), robot_(std::move(robot)), cycle_(cycle), heartbeat_(heartbeat) {}
+
+grpc::Status ControllerService::GetRobot(Context* context, const v1::GetRobotRequest* /*request*/,
+                                         v1::RobotReply* reply) {
+  return answer(context, [&] {
+    reply->set_version(VIAPOINT_VERSION);
+    reply->set_description(to_yaml(robot_->description()));
+    reply->set_fingerprint(robot_->fingerprint());
+    reply->set_cycle(seconds(cycle_));
+    reply->set_heartbeat(seconds(heartbeat_));
+  });
+}
+
+grpc::Status ControllerService::GetState(Context* context, const v1::GetStateRequest* /*request*/,
+                                         v1::ArmState* reply) {
+  return answer(context, [&] { *reply = wire_of(host_.status()); });
+}
+
+grpc::Status ControllerService::GetRun(Context* context, const v1::GetRunRequest* request,
+                                       v1::RunState* reply) {
+  return answer(context, [&] {
+    const std::shared_ptr<Job> job = host_.job(request->run());
+    try {
+      // The log is complete only once a wait for the end comes back.
+      reply->set_ended(job->wait(0.0));
+    } catch (const MotionError& error) {
+      reply->set_ended(true);
+      *reply->mutable_fault() = wire_of(error.problem());
+    }
+    reply->set_state(to_string(job->state()));
+    reply->set_nominal_time(job->nominal_time());
+    reply->set_duration(job->duration());
+    reply->set_move(job->move());
+    reply->set_overruns(job->overruns());
+  });
+}
+
+grpc::Status ControllerService::GetReport(Context* context, const v1::GetReportRequest* request,
+                                          v1::RunReport* reply) {
+  return answer(context, [&] { *reply = wire_of(host_.job(request->run())->report()); });
+}
+
+grpc::Status ControllerService::GetLog(Context* context, const v1::GetLogRequest* request,
+                                       v1::LogPart* reply) {
+  return answer(context, [&] {
+    const std::size_t count = std::min<std::size_t>(request->count(), kMostRecords);
+    *reply = wire_of(host_.job(request->run())->log(request->from_cycle(), count));
+  });
+}
+
+grpc::Status ControllerService::TakeControl(Context* context, const v1::TakeControlRequest* request,
+                                            v1::Control* reply) {
+  return answer(context, [&] {
+    const std::string name = name_of(request->name());
+    reply->set_token(host_.take_control(name));
+    reply->set_heartbeat(seconds(heartbeat_));
+    spdlog::info("\"{}\" has control ({})", name, context->peer());
+  });
+}
+
+grpc::Status ControllerService::Beat(Context* context, const v1::BeatRequest* request,
+                                     v1::BeatReply* /*reply*/) {
+  return answer(context, [&] { host_.beat(request->token()); });
+}
+
+grpc::Status ControllerService::GiveUpControl(Context* context,
+                                              const v1::GiveUpControlRequest* request,
+                                              v1::GiveUpControlReply* /*reply*/) {
+  return answer(context, [&] { host_.give_up_control(request->token()); });
+}
+
+grpc::Status ControllerService::AddPieces(Context* context, const v1::AddPiecesRequest* request,
+                                          v1::AddPiecesReply* /*reply*/) {
+  return answer(context, [&] {
+    host_.add_pieces(request->token(), request->first(),
+                     pieces_of(request->pieces(), robot_->joints()));
+  });
+}
+
+grpc::Status ControllerService::Run(Context* context, const v1::RunRequest* request,
+                                    v1::RunReply* reply) {
+  return answer(context, [&] {
+    if (request->fingerprint() != robot_->fingerprint()) {
+      throw MotionError(ErrorCode::kBadArgument,
+                        "the motion was planned for another robot (fingerprint " +
+                            name_of(request->fingerprint()) + "), the arm is \"" + robot_->name() +
+                            "\" (" + robot_->fingerprint() + ")",
+                        {"plan it for the robot of this arm: arm.robot"});
+    }
+    reply->set_run(host_.run(request->token()));
+  });
+}
+
+grpc::Status ControllerService::Steer(Context* context, const v1::SteerRequest* request,
+                                      v1::SteerReply* /*reply*/) {
+  return answer(context, [&] {
+    host_.steer(request->token(), request->run(), steering_of(request->wish()));
+  });
+}
+
+grpc::Status ControllerService::SetOverride(Context* context, const v1::SetOverrideRequest* request,
+                                            v1::SetOverrideReply* /*reply*/) {
+  return answer(context, [&] { host_.set_override(request->token(), request->share()); });
+}
+
+grpc::Status ControllerService::Jog(Context* context, const v1::JogRequest* request,
+                                    v1::JogReply* /*reply*/) {
+  return answer(context, [&] {
+    host_.jog(request->token(), joints_of(request->velocity(), "velocity", robot_->joints()));
+  });
+}
+
+}  // namespace viapoint::controller

@@ -1,0 +1,87 @@
+#include "controller/serve.hpp"
+
+#include <pthread.h>
+#include <spdlog/spdlog.h>
+
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "controller/config.hpp"
+#include "controller/controller_service.hpp"
+#include "controller/exit_code.hpp"
+#include "controller/remote_server.hpp"
+#include "controller/run_archive.hpp"
+#include "controller/stop_signals.hpp"
+#include "viapoint/core/error.hpp"
+#include "viapoint/drives/simulated_drive.hpp"
+#include "viapoint/kinematics/robot_description.hpp"
+#include "viapoint/kinematics/robot_model.hpp"
+#include "viapoint/remote/arm_host.hpp"
+
+namespace viapoint::controller {
+namespace {
+
+/// Memory is locked as a whole: stacks of the usual 8 MiB would all be taken at once.
+constexpr std::size_t kStack = 512U << 10;
+
+void make_threads_small() {
+  pthread_attr_t attributes;
+  if (pthread_attr_init(&attributes) != 0) return;
+  if (pthread_attr_setstacksize(&attributes, kStack) == 0) {
+    pthread_setattr_default_np(&attributes);
+  }
+  pthread_attr_destroy(&attributes);
+}
+
+JointVector start_of(const Config& config, const RobotModel& robot) {
+  if (config.start.size() == 0) return JointVector::Zero(robot.joints());
+  if (config.start.size() != robot.joints()) {
+    throw MotionError(ErrorCode::kFile, "start has " + std::to_string(config.start.size()) +
+                                            " values, \"" + robot.name() + "\" has " +
+                                            std::to_string(robot.joints()) + " joints");
+  }
+  return config.start;
+}
+
+LoopOptions options_of(const Config& config, const RobotModel& robot) {
+  LoopOptions options;
+  options.cycle = config.cycle;
+  options.guard = config.guard;
+  if (robot.has_kinematics()) options.guard.kinematics = robot.forward();
+  return options;
+}
+
+}  // namespace
+
+int serve(const std::string& config_path) {
+  const Config config = load_config(config_path);
+  const RobotPtr robot = RobotModel::make(load_description(config.robot));
+  const JointVector start = start_of(config, *robot);
+  const LoopOptions options = options_of(config, *robot);
+  make_threads_small();
+  StopSignals signals;
+
+  ArmHost host(
+      robot->limits(),
+      [&](const JointVector& rest) {
+        return std::make_unique<ControllerLoop>(
+            std::make_unique<SimulatedDrive>(rest.size() == 0 ? start : rest), robot->limits(),
+            options);
+      },
+      config.heartbeat);
+  for (const std::string& line : host.status().shortcomings) spdlog::warn("{}", line);
+  std::optional<RunArchive> archive;
+  if (!config.logs.empty()) archive.emplace(host, config.logs);
+  ControllerService service(host, robot, config.cycle, config.heartbeat);
+  const RemoteServer server(service, config);
+  spdlog::info("\"{}\" is served at {}:{}{}", robot->name(), config.host, server.port(),
+               config.tls ? ", to clients with a certificate" : "");
+
+  signals.wait();
+  spdlog::info("stopping on the path");
+  host.shut_down();
+  return kFinished;
+}
+
+}  // namespace viapoint::controller

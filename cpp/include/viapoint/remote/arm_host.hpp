@@ -1,0 +1,91 @@
+/// @file
+/// An arm that several programs look at and one commands: what a server offers, without the
+/// network.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "viapoint/core/joint_limits.hpp"
+#include "viapoint/realtime/controller_loop.hpp"
+#include "viapoint/trajectory/trajectory_piece.hpp"
+
+namespace viapoint {
+
+/// What anybody may know of the arm.
+struct HostStatus {
+  JointVector setpoint;  ///< (n,) [rad or m]
+  JointVector measured;  ///< (n,) [rad or m]
+  double override_share = 1.0;
+  bool busy = false, jogging = false;
+  std::string jog_block;  ///< as ControllerLoop::jog_block
+  std::string fault;      ///< as ControllerLoop::fault
+  std::vector<std::string> shortcomings;
+  std::string operator_name;  ///< who has control; empty: nobody
+  std::string control_loss;   ///< how control was lost last; empty: it never was
+  std::uint64_t run = 0;      ///< number of the last run; 0: none yet
+};
+
+/// What the operator may wish of a run.
+enum class Steering : std::uint8_t { kPause, kResume, kStep, kBackward, kStop, kStopAndRelease };
+
+/// Owns the loop. One operator at a time moves the arm (ControlSeat); when he falls silent or
+/// leaves, a run under way pauses on its path, a jog ends, and the run waits for what the next
+/// operator says.
+///
+/// Threads: any, at once. Real-time: not; the loop's own thread never waits for anything here.
+class ArmHost {
+ public:
+  /// Builds the loop with its drive. Called at first and, after a fault or release, when the next
+  /// operator takes control. @param rest where the arm stood last; empty at first
+  using MakeLoop = std::function<std::unique_ptr<ControllerLoop>(const JointVector& rest)>;
+
+  /// @param heartbeat an operator has to be heard of within it [> 0]: what moves has begun to stop
+  ///        when so much time has passed since the last beat
+  /// @throws what `make_loop` throws
+  ArmHost(const JointLimits& limits, MakeLoop make_loop, std::chrono::nanoseconds heartbeat);
+  /// As shut_down().
+  ~ArmHost();
+  ArmHost(const ArmHost&) = delete;
+  ArmHost& operator=(const ArmHost&) = delete;
+
+  /// Takes control, and returns the token that commands carry. After a fault or a release the
+  /// drive is enabled anew. @throws NotInControl when another has it; kDriveFault
+  [[nodiscard]] std::string take_control(const std::string& name);
+  /// @throws NotInControl, as all that follow with a token
+  void beat(const std::string& token);
+  void give_up_control(const std::string& token);
+
+  /// Collects a motion part by part; `first` forgets what came before.
+  /// @throws MotionError(kBadArgument) beyond kMaxPieces
+  void add_pieces(const std::string& token, bool first, std::vector<TrajectoryPiece> pieces);
+  static constexpr std::size_t kMaxPieces = 100'000;
+  /// Proves the motion collected and runs it; returns the run's number, from 1.
+  /// @throws MotionError of ControllerLoop::run, with the certificate's first problem
+  [[nodiscard]] std::uint64_t run(const std::string& token);
+  /// @throws MotionError(kBadArgument) for a run that is not kept
+  void steer(const std::string& token, std::uint64_t run, Steering steering);
+  /// @throws MotionError of ControllerLoop::set_override
+  void set_override(const std::string& token, double share);
+  /// @throws MotionError of ControllerLoop::jog
+  void jog(const std::string& token, const JointVector& velocity);
+
+  [[nodiscard]] HostStatus status() const;
+  /// A run and its log; the newest kRunsKept are kept.
+  /// @throws MotionError(kBadArgument) for another number
+  [[nodiscard]] std::shared_ptr<Job> job(std::uint64_t run) const;
+  static constexpr std::uint64_t kRunsKept = 2;
+
+  /// Stops a run on its path and a jog, and waits for the rest; nobody moves the arm any more.
+  void shut_down();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace viapoint

@@ -1,0 +1,285 @@
+#include "viapoint/remote/arm_host.hpp"
+
+#include <algorithm>
+#include <condition_variable>
+#include <deque>
+#include <iterator>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include "viapoint/core/error.hpp"
+#include "viapoint/remote/control_seat.hpp"
+#include "viapoint/trajectory/trajectory.hpp"
+
+namespace viapoint {
+namespace {
+
+using std::chrono::steady_clock;
+
+/// The seat is lost a little before the heartbeat is over, so that the stop has begun within it.
+constexpr double kShareOfHeartbeat = 0.9;
+constexpr double kSlice = 0.05;  ///< of a wait for a run's end [s]
+
+struct Run {
+  std::uint64_t number = 0;
+  std::shared_ptr<Job> job;
+};
+
+bool has_ended(const Job& job) {
+  const RunState state = job.state();
+  return state == RunState::kFinished || state == RunState::kStopped || state == RunState::kFault;
+}
+
+/// What the loop alone knows.
+HostStatus look_at(const ControllerLoop& loop) {
+  HostStatus status;
+  status.setpoint = loop.position();
+  status.measured = loop.measured().q;
+  status.override_share = loop.override_share();
+  status.busy = loop.busy();
+  status.jogging = loop.jogging();
+  status.jog_block = loop.jog_block();
+  status.fault = loop.fault();
+  status.shortcomings = loop.shortcomings();
+  return status;
+}
+
+}  // namespace
+
+struct ArmHost::Impl {
+  Impl(const JointLimits& joint_limits, MakeLoop maker, std::chrono::nanoseconds heartbeat)
+      : limits(joint_limits),
+        make_loop(std::move(maker)),
+        loop(make_loop({})),
+        seat(std::chrono::duration_cast<std::chrono::nanoseconds>(kShareOfHeartbeat * heartbeat)),
+        watchdog([this] { watch(); }) {}
+
+  ~Impl() {
+    {
+      const std::lock_guard lock(mutex);
+      quits = true;
+    }
+    changed.notify_all();
+    watchdog.join();
+  }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+
+  /// Takes the arm from an operator who has fallen silent.
+  void watch() {
+    std::unique_lock lock(mutex);
+    while (!quits) {
+      if (seat.expire(steady_clock::now())) {
+        abandon(lock);
+      } else if (const auto deadline = seat.deadline()) {
+        changed.wait_until(lock, *deadline);
+      } else {
+        changed.wait(lock);
+      }
+    }
+  }
+
+  /// Nobody commands the arm any more: it comes to rest on its path, and waits. @pre locked
+  void abandon(std::unique_lock<std::mutex>& lock) {
+    pending.clear();
+    if (!runs.empty()) runs.back().job->pause();
+    const std::shared_ptr<ControllerLoop> present = loop;
+    lock.unlock();
+    if (present != nullptr) end_jog(*present);
+    lock.lock();
+  }
+
+  void end_jog(ControllerLoop& of) const {
+    if (!of.jogging()) return;
+    try {
+      of.jog(JointVector::Zero(limits.joints()));
+    } catch (const MotionError& error) {
+      // A run that began, or a drive that failed, has ended the jog already.
+      if (error.code() != ErrorCode::kBusy && error.code() != ErrorCode::kDriveFault) throw;
+    }
+  }
+
+  /// @pre locked
+  [[nodiscard]] const Run& find(std::uint64_t number) const {
+    for (const Run& run : runs) {
+      if (run.number == number) return run;
+    }
+    throw MotionError(ErrorCode::kBadArgument, "run " + std::to_string(number) +
+                                                   " is not known; the last one is " +
+                                                   std::to_string(last_run) + ", and the newest " +
+                                                   std::to_string(kRunsKept) + " are kept");
+  }
+
+  /// A loop that has failed, or whose drive was released, makes room for a new one. @pre locked
+  void renew_loop() {
+    const bool was_released = is_release_wished && (runs.empty() || has_ended(*runs.back().job));
+    if (loop != nullptr && loop->fault().empty() && !was_released) return;
+    if (loop != nullptr) last = look_at(*loop);
+    loop.reset();  // its drive has to be free for the next
+    try {
+      loop = make_loop(last.measured);
+    } catch (const MotionError& error) {
+      last.fault = error.problem().message;
+      throw;
+    }
+    is_release_wished = false;
+  }
+
+  /// @pre locked
+  [[nodiscard]] const std::shared_ptr<ControllerLoop>& working_loop(
+      const std::string& token) const {
+    seat.require(token);
+    if (quits) throw NotInControl("the controller is shutting down");
+    return loop;  // there is one as long as somebody has control
+  }
+
+  const JointLimits limits;
+  const MakeLoop make_loop;
+
+  mutable std::mutex mutex;  ///< guards what follows; never held while a motion is proven
+  std::condition_variable changed;
+  std::shared_ptr<ControllerLoop> loop;  ///< null only where the drive could not be enabled anew
+  HostStatus last;                       ///< of the loop before
+  ControlSeat seat;
+  std::vector<TrajectoryPiece> pending;
+  std::deque<Run> runs;
+  std::uint64_t last_run = 0;
+  bool is_release_wished = false;
+  bool quits = false;
+
+  std::thread watchdog;
+};
+
+ArmHost::ArmHost(const JointLimits& limits, MakeLoop make_loop, std::chrono::nanoseconds heartbeat)
+    : impl_(std::make_unique<Impl>(limits, std::move(make_loop), heartbeat)) {}
+
+ArmHost::~ArmHost() { shut_down(); }
+
+std::string ArmHost::take_control(const std::string& name) {
+  const std::lock_guard lock(impl_->mutex);
+  if (impl_->quits) throw NotInControl("the controller is shutting down");
+  if (!impl_->seat.taken()) impl_->renew_loop();
+  std::string token = impl_->seat.take(name, steady_clock::now());
+  impl_->changed.notify_all();
+  return token;
+}
+
+void ArmHost::beat(const std::string& token) {
+  const std::lock_guard lock(impl_->mutex);
+  impl_->seat.beat(token, steady_clock::now());
+}
+
+void ArmHost::give_up_control(const std::string& token) {
+  std::unique_lock lock(impl_->mutex);
+  impl_->seat.leave(token);
+  impl_->abandon(lock);
+}
+
+void ArmHost::add_pieces(const std::string& token, bool first,
+                         std::vector<TrajectoryPiece> pieces) {
+  const std::lock_guard lock(impl_->mutex);
+  impl_->seat.require(token);
+  if (first) impl_->pending.clear();
+  const std::size_t count = impl_->pending.size() + pieces.size();
+  if (count > kMaxPieces) {
+    throw MotionError(ErrorCode::kBadArgument,
+                      "the motion has " + std::to_string(count) + " pieces or more; allowed are " +
+                          std::to_string(kMaxPieces),
+                      {"run it as several programs, one after the other"});
+  }
+  std::move(pieces.begin(), pieces.end(), std::back_inserter(impl_->pending));
+}
+
+std::uint64_t ArmHost::run(const std::string& token) {
+  std::unique_lock lock(impl_->mutex);
+  const std::shared_ptr<ControllerLoop> loop = impl_->working_loop(token);
+  std::vector<TrajectoryPiece> pieces = std::exchange(impl_->pending, {});
+  lock.unlock();
+
+  // Long motions take a while to prove; beats and looks are answered meanwhile.
+  const auto trajectory = std::make_shared<const Trajectory>(std::move(pieces), impl_->limits);
+  const std::shared_ptr<Job> job = loop->run(trajectory);
+
+  lock.lock();
+  const std::uint64_t number = ++impl_->last_run;
+  impl_->runs.push_back({number, job});
+  if (impl_->runs.size() > kRunsKept) impl_->runs.pop_front();
+  // Control may have been lost while the motion was proven.
+  if (!impl_->seat.holds(token)) job->pause();
+  impl_->seat.require(token);
+  return number;
+}
+
+void ArmHost::steer(const std::string& token, std::uint64_t run, Steering steering) {
+  // The lock is held until the wish is told: it cannot overtake a loss of control.
+  const std::lock_guard lock(impl_->mutex);
+  impl_->seat.require(token);
+  Job& job = *impl_->find(run).job;
+  switch (steering) {
+    case Steering::kPause:
+      return job.pause();
+    case Steering::kResume:
+      return job.resume();
+    case Steering::kStep:
+      return job.step();
+    case Steering::kBackward:
+      return job.backward();
+    case Steering::kStop:
+      return job.stop(StopCategory::kHold);
+    case Steering::kStopAndRelease:
+      impl_->is_release_wished = impl_->is_release_wished || !has_ended(job);
+      return job.stop(StopCategory::kRelease);
+  }
+}
+
+void ArmHost::set_override(const std::string& token, double share) {
+  const std::lock_guard lock(impl_->mutex);
+  impl_->working_loop(token)->set_override(share);
+}
+
+void ArmHost::jog(const std::string& token, const JointVector& velocity) {
+  std::unique_lock lock(impl_->mutex);
+  const std::shared_ptr<ControllerLoop> loop = impl_->working_loop(token);
+  lock.unlock();
+  loop->jog(velocity);
+  lock.lock();
+  if (impl_->seat.holds(token)) return;
+  lock.unlock();
+  impl_->end_jog(*loop);
+}
+
+HostStatus ArmHost::status() const {
+  const std::lock_guard lock(impl_->mutex);
+  HostStatus status = impl_->loop == nullptr ? impl_->last : look_at(*impl_->loop);
+  status.operator_name = impl_->seat.name();
+  status.control_loss = impl_->seat.loss();
+  status.run = impl_->last_run;
+  return status;
+}
+
+std::shared_ptr<Job> ArmHost::job(std::uint64_t run) const {
+  const std::lock_guard lock(impl_->mutex);
+  return impl_->find(run).job;
+}
+
+void ArmHost::shut_down() {
+  std::shared_ptr<Job> job;
+  {
+    const std::lock_guard lock(impl_->mutex);
+    impl_->quits = true;
+    if (!impl_->runs.empty()) job = impl_->runs.back().job;
+  }
+  impl_->changed.notify_all();
+  if (job != nullptr) job->stop();
+  if (impl_->loop != nullptr) impl_->end_jog(*impl_->loop);
+  while (job != nullptr && !has_ended(*job)) {
+    try {
+      if (job->wait(kSlice)) break;
+    } catch (const MotionError&) {
+      break;  // the drive has failed: the fault is told by status()
+    }
+  }
+}
+
+}  // namespace viapoint

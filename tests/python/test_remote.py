@@ -1,0 +1,267 @@
+"""A script drives a controller in another process with the words of the one in its own."""
+
+import os
+import re
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import viapoint as vp
+from viapoint.errors import (
+    BadArgumentError,
+    BusyError,
+    DriveFaultError,
+    NotAtStartError,
+    NotInControlError,
+    StoppedError,
+    UnconnectedError,
+    VelocityLimitError,
+)
+
+DOCUMENT = Path(__file__).parents[2] / "docs" / "controller.md"
+
+
+def until(holds):
+    deadline = time.monotonic() + 60
+    while not holds():
+        assert time.monotonic() < deadline
+        time.sleep(0.005)
+
+
+def slow(arm):
+    """A move of many seconds from where the arm rests."""
+    return vp.Program(arm.robot, start=arm.setpoint, scale=0.02).movej(arm.setpoint + 0.3)
+
+
+@pytest.fixture
+def url(serve, abc):
+    return serve(start=list(abc["A"])).url
+
+
+def test_a_run_has_the_setpoints_of_one_in_this_process(url, puma, abc):
+    program = vp.Program(puma, start=abc["A"], name="two moves")
+    program.movej(abc["B"], zone=0.05).set_do(3, True).movej(abc["C"]).wait(0.05)
+    with vp.connect("sim://puma560", start=abc["A"]) as arm:
+        here = arm.run(program)
+    with vp.connect(url) as arm:
+        assert arm.robot.fingerprint == puma.fingerprint
+        there = arm.run(program)
+        assert there.state == "finished"
+        np.testing.assert_array_equal(arm.setpoint, abc["C"])
+        log, report = there.log, there.report
+        assert there.duration == here.duration
+    for name in ("cycle", "nominal_time", "rate", "move", "outputs", "q", "qd", "qdd", "qddd"):
+        np.testing.assert_array_equal(getattr(log, name), getattr(here.log, name), err_msg=name)
+    assert report.cycles == len(log)
+    assert log.robot.fingerprint == puma.fingerprint
+
+
+def test_pause_resume_step_backward_and_stop(url):
+    with vp.connect(url) as arm:
+        arm.override = 0.5
+        assert arm.override == 0.5
+        job = arm.run(slow(arm), wait=False)
+        assert arm.busy
+        assert arm.job is job
+        until(lambda: job.nominal_time > 0.2)
+        job.pause()
+        until(lambda: job.state == "paused")
+        here = job.nominal_time
+        job.backward()
+        until(lambda: job.nominal_time < here)
+        job.resume()
+        until(lambda: job.nominal_time > here)
+        with pytest.raises(BusyError, match="under way"):
+            arm.run(slow(arm))
+        job.step()
+        assert not job.wait(0.01)
+        job.stop()
+        assert job.wait(60)
+        assert job.state == "stopped"
+        assert "paused" in repr(job) or "stopped" in repr(job)
+
+
+def test_a_run_that_another_thread_stops_raises_where_it_is_waited_for(url):
+    def stop():
+        until(lambda: arm.busy)
+        arm.job.stop()
+
+    with vp.connect(url) as arm:
+        program = slow(arm)
+        threading.Thread(target=stop, daemon=True).start()
+        with pytest.raises(StoppedError):
+            arm.run(program)
+
+
+def test_a_jog_moves_the_arm_for_as_long_as_it_is_called(url):
+    with vp.connect(url) as arm:
+        start = arm.setpoint
+        velocity = np.array([0.5, 0, 0, 0, 0, 0])
+
+        def moved():
+            arm.jog(velocity)
+            return arm.setpoint[0] > start[0] + 0.05
+
+        until(moved)
+        arm.jog(np.zeros(6))
+        until(lambda: not arm.jogging)
+        assert arm.jog_block == ""
+        with pytest.raises(VelocityLimitError):
+            arm.jog(np.full(6, 100.0))
+
+
+def test_what_is_refused_says_what_it_says_in_one_process(url, puma, abc):
+    elsewhere = vp.Program(puma, start=abc["B"]).movej(abc["C"])
+    other = vp.load_robot("ur5e")
+    with vp.connect(url) as arm:
+        with pytest.raises(NotAtStartError) as refusal:
+            arm.run(elsewhere)
+        assert refusal.value.joint is not None
+        assert refusal.value.ways_out
+        with pytest.raises(BadArgumentError, match="for the robot"):
+            arm.run(vp.Program(other, start=[0] * 6).movej([0.1] * 6))
+        timed = vp.Program(puma, start=abc["A"]).timed([(abc["C"], 0.1)], t_acc=0.05)
+        with pytest.raises(vp.MotionError):
+            arm.run(timed)
+        assert arm.job is None
+        with pytest.raises(BadArgumentError):
+            arm.override = 2.0
+    with pytest.raises(DriveFaultError, match="no longer connected"):
+        arm.jog(np.zeros(6))
+
+
+def test_the_log_of_every_run_is_written_into_the_folder_of_logs(serve, tmp_path):
+    logs = tmp_path / "logs"
+    logs.mkdir()
+    served = serve(logs=str(logs))
+    with vp.connect(served.url) as arm:
+        for _ in range(2):
+            job = arm.run(vp.Program(arm.robot, start=arm.setpoint).movej(arm.setpoint + 0.02))
+        job.log.save(tmp_path / "here.csv")
+    assert served.end() == 0
+    first, second = sorted(logs.iterdir(), key=lambda path: path.name.partition("-")[2])
+    assert first.name.endswith("-run1.csv")
+    assert second.read_bytes() == (tmp_path / "here.csv").read_bytes()
+
+
+def test_one_has_control_and_any_number_watch(url):
+    with vp.connect(url) as arm:
+        assert f"process {os.getpid()}" in arm.operator
+        with pytest.raises(NotInControlError, match="has control"):
+            vp.connect(url)
+        job = arm.run(slow(arm), wait=False)
+        with vp.connect(url, watch=True) as other, vp.connect(url, watch=True) as third:
+            until(lambda: other.job.nominal_time > 0.0)
+            assert third.job.state == "running"
+            assert len(third.job.log) > 0
+            assert other.operator == arm.operator
+            for command in (other.job.stop, other.job.pause, lambda: other.run(slow(other))):
+                with pytest.raises(NotInControlError):
+                    command()
+            with pytest.raises(NotInControlError):
+                other.override = 0.1
+            with pytest.raises(BadArgumentError, match="Another program"):
+                _ = other.job.motion
+        assert job.state == "running"
+        job.stop()
+    with vp.connect(url) as arm:
+        assert arm.job.state == "stopped"
+        assert "gave up control" in arm.control_loss
+
+
+def test_leaving_the_block_on_an_error_stops_the_run(url):
+    def fail(arm):
+        arm.run(slow(arm), wait=False)
+        raise KeyError
+
+    with pytest.raises(KeyError), vp.connect(url) as arm:
+        fail(arm)
+    with vp.connect(url, watch=True) as arm:
+        assert arm.job.state == "stopped"
+
+
+def test_a_released_drive_is_enabled_for_the_next_connection(url):
+    with vp.connect(url) as arm:
+        job = arm.run(slow(arm), wait=False)
+        job.stop(category=1)
+        job.wait()
+        with pytest.raises(DriveFaultError, match="released"):
+            arm.run(slow(arm))
+    with vp.connect(url) as arm:
+        arm.run(vp.Program(arm.robot, start=arm.setpoint).movej(arm.setpoint + 0.02))
+
+
+@pytest.mark.parametrize(
+    ("url", "options", "says"),
+    [
+        ("tcp://", {}, "tcp://<host>:<port>"),
+        ("tcp://127.0.0.1", {}, "tcp://<host>:<port>"),
+        ("tcp://127.0.0.1:x", {}, "tcp://<host>:<port>"),
+        ("tcp://127.0.0.1:7420/arm", {}, "tcp://<host>:<port>"),
+        ("tcp://127.0.0.1:7420", {"start": [0] * 6}, "start is for a simulated arm"),
+        ("tcp://127.0.0.1:7420", {"tool_speed": 0.25}, "tool_speed is for a simulated arm"),
+        ("tcp://127.0.0.1:7420", {"cycle": 0.001}, "cycle is for a simulated arm"),
+        ("sim://puma560", {"watch": True}, "for a controller"),
+    ],
+)
+def test_what_cannot_be_connected_to_is_refused(url, options, says):
+    with pytest.raises(BadArgumentError, match=says):
+        vp.connect(url, **options)
+
+
+def test_no_controller_is_said(serve):
+    served = serve()
+    assert served.end() == 0
+    with pytest.raises(UnconnectedError, match=f"127.0.0.1:{served.port}"):
+        vp.connect(served.url)
+
+
+def test_another_robot_than_the_controllers_is_refused(url):
+    with pytest.raises(BadArgumentError, match='is "puma560"'):
+        vp.connect(url, robot=vp.load_robot("ur5e"))
+    with vp.connect(url):  # and leaves control free
+        pass
+
+
+def test_a_check_reads_where_the_arm_stands_and_moves_nothing(url, tmp_path, abc):
+    script = tmp_path / "job.py"
+    script.write_text(
+        f"""
+import viapoint as vp
+with vp.connect("{url}") as arm:
+    arm.run(vp.Program(arm.robot, start=arm.setpoint).movej(arm.setpoint + 0.1))
+""",
+        encoding="utf-8",
+    )
+    command = [sys.executable, "-m", "viapoint.cli", "check", str(script)]
+    done = subprocess.run(
+        command, cwd=tmp_path, capture_output=True, text=True, timeout=120, check=False
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    with vp.connect(url, watch=True) as arm:
+        assert arm.job is None
+        np.testing.assert_array_equal(arm.setpoint, abc["A"])
+
+
+def scripts():
+    text = DOCUMENT.read_text(encoding="utf-8")
+    return re.findall(r"^```python\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+
+
+@pytest.mark.parametrize("script", [s for s in scripts() if "tls" not in s])
+def test_the_scripts_of_the_document_run(serve, script, tmp_path):
+    port = serve().port
+    done = subprocess.run(
+        [sys.executable, "-W", "error", "-c", script.replace(":7420", f":{port}")],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
