@@ -15,7 +15,7 @@ SI units and radians everywhere; poses are ``pose_base_tool``, (4, 4). Every err
 `MotionError` (see `viapoint.errors`).
 """
 
-from . import errors, frames, iso9283, profile
+from . import cells, errors, frames, iso9283, profile
 from ._arm import Arm, connect
 from ._chunks import Chunk
 from ._core import (
@@ -78,6 +78,7 @@ __all__ = [
     "TlsFiles",
     "Zone",
     "__version__",
+    "cells",
     "connect",
     "deg",
     "deviation",

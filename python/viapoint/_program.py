@@ -10,11 +10,11 @@ from typing import Literal
 from . import _core, _session
 from ._arguments import ArrayLike, choice, file_name, integer, number
 from ._chunks import Chunk, chunks_of
-from ._curve_steps import CurveSteps
 from ._motion import Motion
 from ._report import Report
 from ._robot import Robot, load_robot
 from ._source import caller
+from ._work_steps import WorkSteps
 from ._zone import ZoneLike
 from .errors import BadArgumentError, BadProgramError, MotionError
 from .frames import Frame, Tool, frame_of, tool_of
@@ -22,7 +22,7 @@ from .frames import Frame, Tool, frame_of, tool_of
 OUTPUTS = 64
 
 
-class Program(CurveSteps):
+class Program(WorkSteps):
     """A list of moves, waits and outputs for one robot.
 
     The builders return the program itself, so that they can be chained. They check types, shapes

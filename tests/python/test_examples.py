@@ -28,6 +28,7 @@ SAYS = {
     "puma560_timed.py": ["501 samples, 1 s", "the drive refuses: NotAtRestError"],
     "rpp.py": ["finished", "height stays between 0.5000"],
     "scara.py": ["finished", "gripper at"],
+    "stacking.py": ["cube 3 at 200 mm", "the screw is 6 mm deep"],
     "teach_playback.py": ["seam.json holds above, seam start, seam end", "finished"],
     "two_link.py": ["72.8856 -41.4096", "54.6642 -18.2214", "finished"],
 }
