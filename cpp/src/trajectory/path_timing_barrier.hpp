@@ -28,15 +28,18 @@
 
 namespace viapoint::path_timing {
 
+/// What a start may use of the limits: far enough from them that the first steps are long.
+inline constexpr double kFeasibleRoom = 0.95;
+
 class BarrierProblem {
  public:
   BarrierProblem(const Course& course, const Grid& grid);
 
   /// A strictly feasible start out of the grid's guess.
   [[nodiscard]] SquareRate start() const;
-  /// Scales `rate` down until it keeps every limit with some room: where it must be, `rounds`
+  /// Scales `rate` down until it uses at most `room` of every limit: where it must be, `rounds`
   /// times, then all of it.
-  void make_feasible(SquareRate& rate, int rounds) const;
+  void make_feasible(SquareRate& rate, int rounds, double room) const;
   /// Goes to the central path from `rate`, which must be strictly feasible.
   /// @param from weight of the barrier for which `rate` is about central; `weight`, if for none
   /// @param weight the one to come to, as a share of time: what is left to gain is about that times

@@ -24,7 +24,7 @@ SquareRate BarrierProblem::start() const {
   rate.front().slope = start_tie() * rate.front().value;
   rate.back().slope = end_tie() * rate.back().value;
   constexpr int kRounds = 5;
-  make_feasible(rate, kRounds);
+  make_feasible(rate, kRounds, kFeasibleRoom);
   return rate;
 }
 
@@ -102,8 +102,7 @@ std::vector<Shares> BarrierProblem::shares(const SquareRate& rate) const {
   return shares;
 }
 
-void BarrierProblem::make_feasible(SquareRate& rate, int rounds) const {
-  constexpr double kRoom = 0.95;
+void BarrierProblem::make_feasible(SquareRate& rate, int rounds, double room) const {
   const size_t n = nodes_.size();
   std::vector<double> scale(n);
   for (int round = 0;; ++round) {
@@ -125,7 +124,7 @@ void BarrierProblem::make_feasible(SquareRate& rate, int rounds) const {
     }
     double worst = 0.0;
     for (size_t k = 0; k < n; ++k) {
-      scale[k] = std::max(excess[k], excess[k + 1]) / kRoom;
+      scale[k] = std::max(excess[k], excess[k + 1]) / room;
       worst = std::max(worst, scale[k]);
     }
     if (worst <= 1.0) return;

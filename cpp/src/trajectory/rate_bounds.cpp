@@ -60,12 +60,12 @@ TimingSamples::TimingSamples(const Quintic& timing, double duration, int parts, 
   chord_ = step * step / 8.0;
 }
 
-double TimingSamples::largest(std::size_t order) const {
-  double most = 0.0;
-  for (std::size_t k = 0; k <= static_cast<std::size_t>(parts_); ++k) {
-    most = std::max(most, std::abs(at_[k][order]));
+double TimingSamples::least(std::size_t order) const {
+  double least = std::abs(at_[0][order]);
+  for (std::size_t k = 1; k <= static_cast<std::size_t>(parts_); ++k) {
+    least = std::min(least, std::abs(at_[k][order]));
   }
-  return most;
+  return least;
 }
 
 Rates TimingSamples::reached(const Quintic& c) const {

@@ -42,14 +42,14 @@ class TimingSamples {
   /// acceleration.
   [[nodiscard]] Rates reached(const VectorQuintic& w) const;
   [[nodiscard]] Rates between(const VectorQuintic& w) const;
-  /// |u̇| and |ü|: the largest at the instants, and bounds.
-  [[nodiscard]] double reached_rate() const { return largest(1); }
-  [[nodiscard]] double reached_change() const { return largest(2); }
+  /// |u̇| and |ü|: the least at the instants, and bounds.
+  [[nodiscard]] double least_rate() const { return least(1); }
+  [[nodiscard]] double least_change() const { return least(2); }
   [[nodiscard]] double most_rate() const { return bound_[1]; }
   [[nodiscard]] double most_change() const { return bound_[2]; }
 
  private:
-  [[nodiscard]] double largest(std::size_t order) const;
+  [[nodiscard]] double least(std::size_t order) const;
 
   int parts_;
   std::array<Quintic, kMostParts + 1> at_;  ///< derivatives by τ

@@ -38,17 +38,17 @@ struct Search {
     const TimingSamples samples(piece.timing, piece.duration, kParts, from, to);
     const Rates found = samples.reached(rate.coefficients);
     const Rates more = samples.between(rate.coefficients);
-    // With the error of the rates: at the samples, and as a bound.
+    // With the error of the rates: no more than at the sample that is the worst, and as a bound.
     const auto speed_share = [&](double speed_there, double u1) {
       return (speed_there + rate.error * u1) * per_speed;
     };
     const auto acceleration_share = [&](double there, double u1, double u2) {
       return (there + rate.slope_error * u1 * u1 + rate.error * u2) * per_acceleration;
     };
-    const double v = speed_share(found.velocity, samples.reached_rate());
+    const double v = speed_share(found.velocity, samples.least_rate());
     const double v_bound = speed_share(found.velocity + more.velocity, samples.most_rate());
     const double a =
-        acceleration_share(found.acceleration, samples.reached_rate(), samples.reached_change());
+        acceleration_share(found.acceleration, samples.least_rate(), samples.least_change());
     const double a_bound = acceleration_share(found.acceleration + more.acceleration,
                                               samples.most_rate(), samples.most_change());
     // Halving helps where the bound may be less than it is, unless all is well already.
