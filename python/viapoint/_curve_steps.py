@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Literal, Self
+from typing import Literal, Self, Unpack
 
 from . import _core
 from ._arguments import ArrayLike, choice, number, numbers_of, vector
 from ._curve_fit import CurveFit
 from ._source import caller
 from ._step_list import StepList
-from ._zone import ZoneLike
+from ._wishes import Wishes
 from .errors import BadArgumentError
 
 ArcOrientation = Literal["least", "wrist", "fixed", "tangent", "through", "spin", "free"]
@@ -35,13 +35,7 @@ class CurveSteps(StepList):
         angle: float | None = None,
         pitch: float = 0.0,
         orientation: ArcOrientation | None = None,
-        speed: float | None = None,
-        acceleration: float | None = None,
-        angular_speed: float | None = None,
-        angular_acceleration: float | None = None,
-        process_speed: float | None = None,
-        scale: float | None = None,
-        zone: ZoneLike | None = None,
+        **wishes: Unpack[Wishes],
     ) -> Self:
         """Move the tool's point on a circular arc (CIRC), or on a helix.
 
@@ -85,15 +79,7 @@ class CurveSteps(StepList):
         BadArgumentError, NotARotationError
             By the argument's name.
         """
-        options = self._options(
-            speed=speed,
-            acceleration=acceleration,
-            angular_speed=angular_speed,
-            angular_acceleration=angular_acceleration,
-            process_speed=process_speed,
-            scale=scale,
-            zone=zone,
-        )
+        options = self._options(**wishes)
         if via is not None:
             if center is not None or axis is not None or angle is not None or pitch != 0.0:
                 raise BadArgumentError(
@@ -129,13 +115,7 @@ class CurveSteps(StepList):
         pitch: float,
         *,
         axis: ArrayLike | None = None,
-        speed: float | None = None,
-        acceleration: float | None = None,
-        angular_speed: float | None = None,
-        angular_acceleration: float | None = None,
-        process_speed: float | None = None,
-        scale: float | None = None,
-        zone: ZoneLike | None = None,
+        **wishes: Unpack[Wishes],
     ) -> Self:
         """Turn the tool about an axis through its point while it travels along it, as a thread.
 
@@ -164,15 +144,7 @@ class CurveSteps(StepList):
         BadArgumentError
             By the argument's name.
         """
-        options = self._options(
-            speed=speed,
-            acceleration=acceleration,
-            angular_speed=angular_speed,
-            angular_acceleration=angular_acceleration,
-            process_speed=process_speed,
-            scale=scale,
-            zone=zone,
-        )
+        options = self._options(**wishes)
         self._core.add_turn(
             None,
             None if axis is None else vector(axis, "axis", 3, "x, y, z"),
@@ -192,13 +164,7 @@ class CurveSteps(StepList):
         kind: SplineKind = "cubic",
         space: Literal["tool", "joint"] | None = None,
         orientation: SplineOrientation | None = None,
-        speed: float | None = None,
-        acceleration: float | None = None,
-        angular_speed: float | None = None,
-        angular_acceleration: float | None = None,
-        process_speed: float | None = None,
-        scale: float | None = None,
-        zone: ZoneLike | None = None,
+        **wishes: Unpack[Wishes],
     ) -> Self:
         """Move on a smooth curve from where the arm is through, or by, points.
 
@@ -238,15 +204,7 @@ class CurveSteps(StepList):
         BadArgumentError, NotARotationError
             By the argument's name.
         """
-        options = self._options(
-            speed=speed,
-            acceleration=acceleration,
-            angular_speed=angular_speed,
-            angular_acceleration=angular_acceleration,
-            process_speed=process_speed,
-            scale=scale,
-            zone=zone,
-        )
+        options = self._options(**wishes)
         at: list[float] = []
         start = None
         only_positions = positions is not None

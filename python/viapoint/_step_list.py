@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import inf
+from typing import Literal, Unpack
 
 from . import _core
 from ._arguments import (
@@ -15,8 +16,11 @@ from ._arguments import (
     vector,
 )
 from ._robot import Robot, require_robot
+from ._wishes import Wishes, refuse_others
 from ._zone import ZoneLike, zone_of
 from .errors import BadArgumentError
+
+_Limit = Literal["speed", "acceleration", "angular_speed", "angular_acceleration", "scale"]
 
 
 class StepList:
@@ -35,7 +39,7 @@ class StepList:
         zone: ZoneLike,
     ) -> None:
         self.robot = require_robot(robot)
-        self._defaults = {
+        self._defaults: dict[_Limit, float | None] = {
             "speed": speed,
             "acceleration": acceleration,
             "angular_speed": angular_speed,
@@ -55,36 +59,32 @@ class StepList:
         """Joints where the program begins, (n,) [rad or m]."""
         return self._core.start
 
-    def _options(
-        self,
-        *,
-        speed: float | None = None,
-        acceleration: float | None = None,
-        angular_speed: float | None = None,
-        angular_acceleration: float | None = None,
-        process_speed: float | None = None,
-        scale: float | None = None,
-        zone: ZoneLike | None = None,
-    ) -> _core.MoveOptions:
-        if speed is not None and process_speed is not None:
+    def _options(self, **wishes: Unpack[Wishes]) -> _core.MoveOptions:
+        """Check the wishes of a move, and add the defaults."""
+        refuse_others(wishes)
+        process_speed = wishes.get("process_speed")
+        if wishes.get("speed") is not None and process_speed is not None:
             raise BadArgumentError(
                 "Both speed and process_speed are given; the second is the speed to hold, give "
                 "that alone."
             )
-        zone = self._zone if zone is None else zone_of(zone)
+        given = wishes.get("zone")
+        zone = self._zone if given is None else zone_of(given)
 
-        def wish(value: float | None, name: str, unit: str, most: float = inf) -> float | None:
-            return _positive(self._defaults[name] if value is None else value, name, unit, most)
+        def wish(name: _Limit, unit: str, most: float = inf) -> float | None:
+            value = wishes.get(name)
+            value = self._defaults[name] if value is None else value
+            return None if value is None else number(value, name, unit, above=0.0, most=most)
 
         return _core.MoveOptions(
-            speed=wish(speed, "speed", "m/s"),
-            acceleration=wish(acceleration, "acceleration", "m/s²"),
-            angular_speed=wish(angular_speed, "angular_speed", "rad/s"),
-            angular_acceleration=wish(angular_acceleration, "angular_acceleration", "rad/s²"),
+            speed=wish("speed", "m/s"),
+            acceleration=wish("acceleration", "m/s²"),
+            angular_speed=wish("angular_speed", "rad/s"),
+            angular_acceleration=wish("angular_acceleration", "rad/s²"),
             process_speed=None
             if process_speed is None
             else number(process_speed, "process_speed", "m/s", above=0.0),
-            scale=wish(scale, "scale", "", most=1.0),
+            scale=wish("scale", "", most=1.0),
             zone=zone.kind,
             size=zone.size,
         )
@@ -114,7 +114,3 @@ class StepList:
                 "or (4, 4): a pose."
             )
         return _core.Target.joints(array)
-
-
-def _positive(value: float | None, name: str, unit: str, most: float) -> float | None:
-    return None if value is None else number(value, name, unit, above=0.0, most=most)

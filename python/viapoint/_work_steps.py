@@ -8,14 +8,14 @@ from typing import Literal, Self
 from . import _core
 from ._arguments import ArrayLike, Vector, choice, number
 from ._arguments import pose as pose_of
-from ._curve_steps import CurveSteps
 from ._source import caller
+from ._steps import Steps
 from ._zone import ZoneLike
 from .cells import Gripper, lifted
 from .errors import BadArgumentError
 
 
-class WorkSteps(CurveSteps):
+class WorkSteps(Steps):
     """Steps of a program that are made of several moves."""
 
     def pick(
