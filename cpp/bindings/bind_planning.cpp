@@ -206,6 +206,19 @@ void bind_certificate(py::module_& m) {
           "asked", [](const CornerOutcome& c) { return c.asked.size; }, "Size asked for.")
       .def_readonly("stopped", &CornerOutcome::stopped, "The arm stops at the point.")
       .def_readonly("used", &CornerOutcome::used, "Size really used, in the zone's own unit.")
+      .def_property_readonly(
+          "asked_angle",
+          [](const CornerOutcome& c) {
+            return c.asked.bounds_angle() ? std::optional(c.asked.angle) : std::nullopt;
+          },
+          "Angle asked for [rad]; None for a zone without.")
+      .def_readonly("used_angle", &CornerOutcome::used_angle,
+                    "Angle really used, proven [rad]; 0 for a zone without.")
+      .def_readonly("angle_rules", &CornerOutcome::angle_rules,
+                    "The angle was used up before the size.")
+      .def_readonly("merged_into", &CornerOutcome::merged_into,
+                    "Index of the move whose straight leg the point lies so near, by `used`, that "
+                    "it makes no corner; or None.")
       .def_readonly("cut", &CornerOutcome::cut, "Proven largest distance from the legs [m].")
       .def_readonly("reason", &CornerOutcome::reason, "Why shrunk or stopped.")
       .def("__repr__", [](const CornerOutcome& c) {

@@ -7,11 +7,17 @@
 namespace viapoint::python {
 namespace {
 
-Zone zone_from(const std::string& kind, double size) {
-  if (kind == "fine") return {ZoneKind::kFine, 0.0};
-  if (kind == "radius") return {ZoneKind::kRadius, size};
-  if (kind == "deviation") return {ZoneKind::kDeviation, size};
-  if (kind == "joint_deviation") return {ZoneKind::kJointDeviation, size};
+Zone zone_from(const std::string& kind, double size, std::optional<double> angle) {
+  Zone zone;
+  zone.size = size;
+  if (angle) zone.angle = *angle;
+  for (const auto& [name, means] : {std::pair{"fine", ZoneKind::kFine},
+                                    {"radius", ZoneKind::kRadius},
+                                    {"deviation", ZoneKind::kDeviation},
+                                    {"joint_deviation", ZoneKind::kJointDeviation}}) {
+    zone.kind = means;
+    if (kind == name) return zone;
+  }
   throw MotionError(ErrorCode::kBadArgument, "\"" + kind + "\" is no kind of zone.",
                     {"Use \"fine\", \"radius\", \"deviation\" or \"joint_deviation\"."});
 }
@@ -125,15 +131,15 @@ void bind_parts(py::module_& m) {
                        std::optional<double> angular_speed,
                        std::optional<double> angular_acceleration,
                        std::optional<double> process_speed, std::optional<double> scale,
-                       const std::string& zone, double size) {
+                       const std::string& zone, double size, std::optional<double> angle) {
              return MoveOptions{
-                 speed,         acceleration,         scale,        zone_from(zone, size),
+                 speed,         acceleration,         scale,        zone_from(zone, size, angle),
                  angular_speed, angular_acceleration, process_speed};
            }),
            py::kw_only(), py::arg("speed") = py::none(), py::arg("acceleration") = py::none(),
            py::arg("angular_speed") = py::none(), py::arg("angular_acceleration") = py::none(),
            py::arg("process_speed") = py::none(), py::arg("scale") = py::none(),
-           py::arg("zone") = "fine", py::arg("size") = 0.0);
+           py::arg("zone") = "fine", py::arg("size") = 0.0, py::arg("angle") = py::none());
 }
 
 }  // namespace

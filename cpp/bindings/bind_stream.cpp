@@ -1,5 +1,6 @@
 // Programs planned while they are told: one chunk of motion after the other.
 #include <optional>
+#include <string>
 
 #include "bindings.hpp"
 #include "viapoint/planning/stream_planner.hpp"
@@ -21,6 +22,12 @@ class Stream {
 
   /// Takes the steps of `program` from `kept` on, and drops them there.
   void take(MotionProgram& program, size_t kept) {
+    if (kept > program.steps.size()) {
+      throw MotionError(ErrorCode::kBadArgument,
+                        "kept is " + std::to_string(kept) + "; the program has " +
+                            std::to_string(program.steps.size()) + " steps",
+                        {"take what follows the steps that the stream began with"});
+    }
     const auto first = program.steps.begin() + static_cast<std::ptrdiff_t>(kept);
     const std::vector<Step> steps(std::make_move_iterator(first),
                                   std::make_move_iterator(program.steps.end()));
@@ -35,6 +42,7 @@ class Stream {
     handle.motion.robot = robot_;
     handle.motion.trajectory = std::make_shared<const Trajectory>(std::move(chunk->motion));
     handle.motion.corners = std::move(chunk->corners);
+    handle.motion.process_stretches = std::move(chunk->process_stretches);
     handle.motion.problems = std::move(chunk->warnings);
     handle.begin = chunk->begin;
     handle.last = chunk->last;

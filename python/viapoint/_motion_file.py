@@ -81,6 +81,9 @@ class _Writer:
             before, after = cuts.get(k, ([], []))
             numbers = list(range(len(stretches), len(stretches) + len(before) + len(after)))
             stretches += [*before, *after]
+            angle = {}
+            if corner.asked_angle is not None:
+                angle = {"angle": corner.asked_angle, "used_angle": corner.used_angle}
             corner_rows.append(
                 {
                     "leg": self._leg_of[corner.move],
@@ -92,6 +95,7 @@ class _Writer:
                     "reason": corner.reason,
                     "before": numbers[: len(before)],
                     "after": numbers[len(before) :],
+                    **angle,
                 }
             )
         timed = any("timed" in step for step in self._steps)

@@ -68,6 +68,8 @@ class Proven:
 
         Everywhere else on them the tool's speed is proven to lie within 1e-6 of it, and nowhere
         above.
+        A chunk has what has become known since the one before: each stretch when it is known when
+        the chunk it lies in is left. Its times count from the beginning of the first chunk.
         """
         return self._core.process_stretches
 

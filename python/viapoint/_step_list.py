@@ -87,6 +87,7 @@ class StepList:
             scale=wish("scale", "", most=1.0),
             zone=zone.kind,
             size=zone.size,
+            angle=zone.angle,
         )
 
     def _target(

@@ -70,6 +70,41 @@ class CornerFit {
   }
 
  private:
+  /// Of the zone, proven.
+  struct Use {
+    double size = 0.0, angle = 0.0;
+  };
+
+  double share_of(const Use& use) const {
+    return std::max(use.size / zone_.size, use.angle / zone_.angle);
+  }
+
+  /// Above the zone it only tells that.
+  Use radius_use(const CornerShape& shape) const {
+    Use use;
+    use.size = shape.bound_radius(zone_space_, kProofShare * zone_.size * 0.5, zone_.size);
+    if (zone_.bounds_angle() && use.size <= zone_.size) {
+      use.angle = shape.bound_turn(tool_, kProofShare * zone_.angle * 0.5, zone_.angle);
+    }
+    return use;
+  }
+
+  Use deviation_use(const CornerShape& shape) const {
+    Use use;
+    use.size = shape.bound_deviation_from_legs(zone_space_, 1e-4 * zone_.size, kProofShare);
+    if (zone_.bounds_angle()) {
+      use.angle = shape.bound_turn_from_legs(zone_space_, tool_, 1e-4 * zone_.angle, kProofShare);
+    }
+    return use;
+  }
+
+  /// The share of the zone that the shape uses at its place nearest to the corner: nearly always
+  /// all of it. Quick, and no bound.
+  double guessed_share(const CornerShape& shape) const {
+    const double turn = zone_.bounds_angle() ? shape.turn_from_corner(zone_space_, tool_) : 0.0;
+    return share_of({shape.distance_from_corner(zone_space_), turn});
+  }
+
   static Corner refuse(std::string reason) {
     Corner corner;
     corner.reason = std::move(reason);
@@ -88,10 +123,12 @@ class CornerFit {
 
   /// Cuts as far back as the zone's radius reaches along each leg.
   Corner fit_radius() {
-    double cut_before =
-        legs_.cut_within(zone_space_, CornerLegs::kBefore, kAim * zone_.size, room_before_);
-    double cut_after =
-        legs_.cut_within(zone_space_, CornerLegs::kAfter, kAim * zone_.size, room_after_);
+    const auto inside = [this](const JointVector& q) {
+      return zone_space_.distance(q, legs_.corner()) <= kAim * zone_.size &&
+             (!zone_.bounds_angle() || tool_.angle(q, legs_.corner()) <= kAim * zone_.angle);
+    };
+    double cut_before = legs_.cut_while(CornerLegs::kBefore, room_before_, inside);
+    double cut_after = legs_.cut_while(CornerLegs::kAfter, room_after_, inside);
     const bool short_before = cut_before >= room_before_;
     const bool short_after = cut_after >= room_after_;
     balance(cut_before, cut_after);
@@ -99,10 +136,9 @@ class CornerFit {
     for (int attempt = 0; attempt < kProofs; ++attempt) {
       const CornerShape shape(legs_, cut_before, cut_after);
       if (!shape.valid(kShortestCut)) break;
-      const double proven =
-          shape.bound_radius(zone_space_, kProofShare * zone_.size * 0.5, zone_.size);
-      if (proven <= zone_.size) {
-        return finish(shape, proven, short_before || short_after);
+      const Use use = radius_use(shape);
+      if (use.size <= zone_.size && use.angle <= zone_.angle) {
+        return finish(shape, use, short_before || short_after);
       }
       refuted = true;
       cut_before *= kProofShrink;
@@ -129,47 +165,46 @@ class CornerFit {
     const double most_after = legs_.chord(CornerLegs::kAfter, room_after_);
     const double most = std::min(std::max(most_before, most_after),
                                  kMostUnequal * std::min(most_before, most_after));
-    // A first guess by the distance from the corner, which grows about like the cut.
-    const double aim = kAim * zone_.size;
+    // A first guess by the place nearest to the corner; what is used grows about like the cut.
     double chord = most;
     for (int i = 0; i < kGuesses; ++i) {
       const CornerShape shape = shape_of(chord);
       if (!shape.valid(kShortestCut)) break;
-      const double distance = shape.distance_from_corner(zone_space_);
-      const bool close = distance >= kGuessShare * aim || chord >= most;
-      if (distance <= aim * (1.0 + kProofShare) && close) break;
-      chord = std::min(most, chord * aim / distance);
+      const double guess = guessed_share(shape);
+      const bool close = guess >= kGuessShare * kAim || chord >= most;
+      if (guess <= kAim * (1.0 + kProofShare) && close) break;
+      chord = std::min(most, chord * kAim / guess);
     }
     // The proof has the last word: the cut follows what it finds, between the longest that is
-    // proven and the shortest that is not. The deviation grows about like the cut.
+    // proven and the shortest that is not.
     std::optional<CornerShape> best;
-    double best_proven = 0.0;
-    double proven_chord = 0.0;
-    double refused_chord = std::numeric_limits<double>::infinity();
-    double refused = 0.0;
+    Use best_use;
+    double proven_chord = 0.0, proven = 0.0;
+    double refused_chord = std::numeric_limits<double>::infinity(), refused = 0.0;
     for (int attempt = 0; attempt < kProofs; ++attempt) {
       const CornerShape shape = shape_of(chord);
       if (!shape.valid(kShortestCut)) break;
-      const double proven =
-          shape.bound_deviation_from_legs(zone_space_, 1e-4 * zone_.size, kProofShare);
-      if (proven <= zone_.size) {
+      const Use use = deviation_use(shape);
+      const double share = share_of(use);
+      if (use.size <= zone_.size && use.angle <= zone_.angle) {
         best.emplace(shape);
-        best_proven = proven;
+        best_use = use;
         proven_chord = chord;
+        proven = share;
       } else {
         refused_chord = chord;
-        refused = proven;
+        refused = share;
       }
       const bool by_room = proven_chord >= most;
-      if (best && (by_room || best_proven >= kFullUse * zone_.size || attempt >= kRefinements)) {
-        return finish(*best, best_proven, by_room);
+      if (best && (by_room || proven >= kFullUse || attempt >= kRefinements)) {
+        return finish(*best, best_use, by_room);
       }
       // Regula falsi between the two, towards the share of the zone aimed at.
       chord = std::isfinite(refused_chord)
                   ? proven_chord + (refused_chord - proven_chord) *
-                                       std::clamp((aim - best_proven) / (refused - best_proven),
-                                                  kLeastMove, 1.0 - kLeastMove)
-                  : std::min(most, chord * std::min(kMostGrowth, aim / proven));
+                                       std::clamp((kAim - proven) / (refused - proven), kLeastMove,
+                                                  1.0 - kLeastMove)
+                  : std::min(most, chord * std::min(kMostGrowth, kAim / share));
     }
     return refuse_all(std::isfinite(refused_chord));
   }
@@ -179,19 +214,22 @@ class CornerFit {
             legs_.cut_of_chord(CornerLegs::kAfter, chord, room_after_)};
   }
 
-  Corner finish(const CornerShape& shape, double used, bool limited_by_room) const {
+  Corner finish(const CornerShape& shape, const Use& use, bool limited_by_room) const {
     Corner corner;
     corner.possible = true;
     corner.cut_before = shape.cut_before();
     corner.cut_after = shape.cut_after();
     corner.scale_after = shape.scale_after();
     corner.blend = shape.blend();
-    corner.used = used;
+    corner.used = use.size;
+    corner.used_angle = use.angle;
+    corner.angle_rules = use.angle / zone_.angle > use.size / zone_.size;
     if (zone_.kind == ZoneKind::kDeviation) {
-      corner.tool_deviation = used;
+      corner.tool_deviation = use.size;
     } else if (has_tool_) {
       corner.tool_deviation = shape.bound_deviation_from_legs(tool_, kToolResolution, kProofShare);
     }
+    corner.short_of_room = limited_by_room;
     if (limited_by_room && turn_ > kCollinear) {
       corner.reason = "the legs are too short for the whole zone";
     }
@@ -221,11 +259,11 @@ Corner round_corner(const ForwardKinematics* arm, const JointPath& before, const
     throw MotionError(ErrorCode::kDiscontinuous, "the legs of a corner do not meet");
   }
   Corner impossible;
-  if (zone.kind == ZoneKind::kFine || !(zone.size > 0.0)) {
+  if (zone.kind == ZoneKind::kFine || !(zone.size > 0.0) || !(zone.angle > 0.0)) {
     impossible.reason = "the zone has no size: stop at the point";
     return impossible;
   }
-  if (arm == nullptr && zone.kind != ZoneKind::kJointDeviation) {
+  if (arm == nullptr && (zone.kind != ZoneKind::kJointDeviation || zone.bounds_angle())) {
     impossible.reason = "an arm without kinematics has no tool: only joint zones are possible";
     return impossible;
   }

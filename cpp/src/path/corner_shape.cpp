@@ -91,21 +91,18 @@ double CornerLegs::cut_of_chord(Side side, double wanted, double room) const {
   return low;
 }
 
-double CornerLegs::cut_within(const MotionSpace& space, Side side, double distance,
-                              double room) const {
-  const auto inside = [&](double cut) {
-    return space.distance(at_cut(side, cut).q, corner_) <= distance;
-  };
+double CornerLegs::cut_while(Side side, double room,
+                             const std::function<bool(const JointVector&)>& inside) const {
   double low = 0.0;
   for (int k = 1; k <= kCutSamples; ++k) {
     double high = room * k / kCutSamples;
-    if (inside(high)) {
+    if (inside(at_cut(side, high).q)) {
       low = high;
       continue;
     }
     for (int i = 0; i < kCutBisections; ++i) {
       const double middle = 0.5 * (low + high);
-      (inside(middle) ? low : high) = middle;
+      (inside(at_cut(side, middle).q) ? low : high) = middle;
     }
     return low;
   }
@@ -230,6 +227,37 @@ double CornerShape::bound_deviation_from_legs(const MotionSpace& space, double r
   return std::max({space.bound_directed(blend, legs, resolution, share, least),
                    space.bound_directed(before_part, only_blend, resolution, share, least),
                    space.bound_directed(after_part, only_blend, resolution, share, least)});
+}
+
+double CornerShape::bound_turn(const MotionSpace& tool, double resolution, double give_up) const {
+  const RestMotion corner(legs_.corner());
+  double worst = 0.0;
+  const auto take = [&](const JointMotion& motion) {
+    if (worst > give_up) return;
+    worst = std::max(worst,
+                     tool.bound_angle(motion, corner, 0.0, 1.0, resolution, 0.0, worst, give_up));
+  };
+  take(cut_part(CornerLegs::kBefore));
+  take(cut_part(CornerLegs::kAfter));
+  take(PieceMotion(blend_));
+  return worst;
+}
+
+double CornerShape::bound_turn_from_legs(const MotionSpace& space, const MotionSpace& tool,
+                                         double resolution, double share) const {
+  const double u_star = nearest_to_corner(space);
+  const double least = tool.angle(position(blend_, u_star), legs_.corner());
+  const PieceMotion blend(blend_);
+  const auto bound = [&](const PathMotion& leg, double u0, double u1) {
+    return tool.bound_angle(blend, leg, u0, u1, resolution, share, least,
+                            std::numeric_limits<double>::infinity());
+  };
+  return std::max(bound({legs_.path(CornerLegs::kBefore), s_before(u_star)}, 0.0, u_star),
+                  bound({legs_.path(CornerLegs::kAfter), s_after(u_star)}, u_star, 1.0));
+}
+
+double CornerShape::turn_from_corner(const MotionSpace& space, const MotionSpace& tool) const {
+  return tool.angle(position(blend_, nearest_to_corner(space)), legs_.corner());
 }
 
 double CornerShape::distance_from_corner(const MotionSpace& space) const {

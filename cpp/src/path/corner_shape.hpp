@@ -15,6 +15,7 @@
 /// ‖b(u*) − C‖, which is the least that any pairing can have: nothing is given away.
 #pragma once
 
+#include <functional>
 #include <limits>
 
 #include "path/tool_motion.hpp"
@@ -42,9 +43,9 @@ class CornerLegs {
   [[nodiscard]] double chord(Side side, double cut) const;
   /// The cut with this chord, or `room` where the chord there is shorter.
   [[nodiscard]] double cut_of_chord(Side side, double chord, double room) const;
-  /// The nearest cut at this distance in `space`, or `room` where it is not reached (by samples).
-  [[nodiscard]] double cut_within(const MotionSpace& space, Side side, double distance,
-                                  double room) const;
+  /// The nearest cut where `inside` ends, or `room` where it does not end (by samples).
+  [[nodiscard]] double cut_while(Side side, double room,
+                                 const std::function<bool(const JointVector&)>& inside) const;
   /// Largest |q_i| along both, (n,).
   [[nodiscard]] JointVector travel() const;
 
@@ -72,9 +73,18 @@ class CornerShape {
   /// Largest distance both ways between the blend and the cut parts, proven.
   [[nodiscard]] double bound_deviation_from_legs(const MotionSpace& space, double resolution,
                                                  double share) const;
+  /// Largest angle between the tool's orientation on blend and cut parts and that at the corner,
+  /// proven. Above `give_up` it only tells that.
+  [[nodiscard]] double bound_turn(const MotionSpace& tool, double resolution, double give_up) const;
+  /// Largest angle between the tool's orientations on the blend and on the cut parts, proven for
+  /// the pairing above with the u* of `space`: what lies side by side is turned alike.
+  [[nodiscard]] double bound_turn_from_legs(const MotionSpace& space, const MotionSpace& tool,
+                                            double resolution, double share) const;
   /// Least distance of the blend from the corner: the deviation is this or more, and nearly always
   /// just this. Quick, and no bound.
   [[nodiscard]] double distance_from_corner(const MotionSpace& space) const;
+  /// The tool's angle there from that at the corner.
+  [[nodiscard]] double turn_from_corner(const MotionSpace& space, const MotionSpace& tool) const;
 
  private:
   using Polynomial6 = Eigen::Matrix<double, 6, 1>;

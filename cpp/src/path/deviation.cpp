@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "path/chain_bounds.hpp"
+#include "path/turning.hpp"
 #include "viapoint/core/units.hpp"
 
 namespace viapoint {
@@ -28,42 +29,6 @@ struct StretchDeviation {
   Deviation at_middle;
   Deviation bound;
 };
-
-/// sup ‖e + e'·t + e''·t²/2‖ for |t| <= half: a norm is convex, so the control points of the
-/// quadratic (Bernstein form) bound it.
-double quadratic_bound(const Eigen::Vector3d& e, const Eigen::Vector3d& e1,
-                       const Eigen::Vector3d& e2, double half) {
-  const Eigen::Vector3d bend = 0.5 * half * half * e2;
-  return std::max(
-      {(e - half * e1 + bend).norm(), (e - bend).norm(), (e + half * e1 + bend).norm()});
-}
-
-/// Bounds the angle of Q = R_curveᵀ R_tool. Its left rate is v = R_curveᵀ (w_tool − w_curve). The
-/// rotation vector φ of Q obeys φ' = J⁻¹(φ) v with the inverse left Jacobian of SO(3) (Bullo &
-/// Murray 1995), and ‖J⁻¹(φ) − I‖ <= ½‖φ‖ + 0.0848 ‖φ‖² <= 0.585 ‖φ‖ for ‖φ‖ <= 1. So φ is the
-/// quadratic φ(m) + v t + v' t²/2 up to sup‖v''‖ half³/6 + 0.585 sup‖φ‖ sup‖v‖ half.
-double angle_bound(const Eigen::Vector3d& phi, const CurvePoint& on_curve,
-                   const CurveBounds& curve_bounds, const Eigen::Vector3d& tool_w,
-                   const Eigen::Vector3d& tool_w1, double tool_w2, double half) {
-  // In the base frame first: u = w_tool − w_curve has the size of v, its derivatives do not turn.
-  const Eigen::Vector3d u = tool_w - on_curve.w;
-  const Eigen::Vector3d u1 = tool_w1 - on_curve.w1;
-  const double sup_u2 = tool_w2 + curve_bounds.w2;
-  const double sup_u1 = u1.norm() + half * sup_u2;
-  const double sup_u = u.norm() + half * (u1.norm() + 0.5 * half * sup_u2);
-  const double angle = phi.norm();
-  const double crude = std::min(angle + half * sup_u, kPi);
-  if (crude > 1.0) return crude;
-  // v' and v'' in the frame of the curve, which turns at w_curve.
-  const Eigen::Matrix3d to_curve = on_curve.rotation.transpose();
-  const Eigen::Vector3d v = to_curve * u;
-  const Eigen::Vector3d v1 = to_curve * (u1 - on_curve.w.cross(u));
-  const double sup_v2 = sup_u2 + 2.0 * curve_bounds.w * sup_u1 +
-                        (curve_bounds.w1 + curve_bounds.w * curve_bounds.w) * sup_u;
-  const double refined = quadratic_bound(phi, v, v1, half) + half * half * half * sup_v2 / 6.0 +
-                         0.585 * crude * sup_u * half;
-  return std::min(crude, refined);
-}
 
 /// Derivatives of an axis z that turns at w, by z' = w × z: exact to the second, and a bound of the
 /// third over |t| <= half from that of ‖w''‖ there,
@@ -129,11 +94,14 @@ class PieceDeviation {
                                                           tool.second - asked.second, half) +
                                           half * half * half / 6.0 * (tool.third + asked.third));
     } else if (angle_of_ == AngleOf::kRotation) {
-      const Eigen::Vector3d phi =
-          rotation_log(on_curve.rotation.transpose() * frames.pose_base_tool.linear());
+      const Eigen::Matrix3d rotation = frames.pose_base_tool.linear();
+      const Turning tool = turning_about(rotation, rate.tail<3>(), rate_change.tail<3>(),
+                                         rotation_second_bound(arm_, sup), half);
+      const Turning asked = {on_curve.rotation, on_curve.w, on_curve.w1,
+                             bounds.w,          bounds.w1,  bounds.w2};
+      const Eigen::Vector3d phi = rotation_log(on_curve.rotation.transpose() * rotation);
       result.at_middle.angle = phi.norm();
-      result.bound.angle = angle_bound(phi, on_curve, bounds, rate.tail<3>(), rate_change.tail<3>(),
-                                       rotation_second_bound(arm_, sup), half);
+      result.bound.angle = angle_bound(phi, tool, asked, half);
     }
     return result;
   }

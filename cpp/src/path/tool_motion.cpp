@@ -26,6 +26,36 @@ void push_halves(std::vector<Interval>& open, const Interval& interval) {
   open.push_back({interval.middle + quarter, quarter, interval.depth + 1});
 }
 
+/// Something in the middle of an interval, and a bound of it all over.
+struct Bounded {
+  double here, bound;
+};
+struct Search {
+  double resolution, share, reached, give_up;
+};
+
+/// A bound of the largest that `measure` has over [u0, u1], see MotionSpace::bound_distance().
+template <typename Measure>
+double bound_largest(double u0, double u1, const Search& search, const Measure& measure) {
+  double seen = search.reached;
+  double proven = 0.0;
+  std::vector<Interval> open = {{0.5 * (u0 + u1), 0.5 * (u1 - u0), 0}};
+  while (!open.empty()) {
+    const Interval interval = open.back();
+    open.pop_back();
+    const Bounded found = measure(interval);
+    seen = std::max(seen, found.here);
+    if (!(seen <= search.give_up)) return seen;
+    if (found.bound <= seen * (1.0 + search.share) + search.resolution ||
+        interval.depth >= kDeepest) {
+      proven = std::max(proven, found.bound);
+    } else {
+      push_halves(open, interval);
+    }
+  }
+  return proven;
+}
+
 JointPiece over_unit_length(JointPiece piece) {
   piece.length = 1.0;
   return piece;
@@ -102,6 +132,15 @@ MotionSpace::Expansion MotionSpace::expand(const LocalMotion& local) const {
           position_third_bound(*arm_, reach_, local.sup)};
 }
 
+Turning MotionSpace::expand_turn(const LocalMotion& local, double half) const {
+  const ChainFrames frames = arm_->frames(local.at.q);
+  const auto jacobian = arm_->jacobian(frames).bottomRows<3>().eval();
+  const auto jacobian_rate = arm_->jacobian_rate(frames, local.at.q1).bottomRows<3>().eval();
+  return turning_about(frames.pose_base_tool.linear(), jacobian * local.at.q1,
+                       jacobian * local.at.q2 + jacobian_rate * local.at.q1,
+                       rotation_second_bound(*arm_, local.sup), half);
+}
+
 MotionSpace::Vector MotionSpace::point(const JointMotion& motion, double u) const {
   if (arm_ == nullptr) return motion.at(u);
   return arm_->pose(motion.at(u)).translation();
@@ -119,24 +158,26 @@ double MotionSpace::bound_difference(const Expansion& a, const Expansion& b, dou
 double MotionSpace::bound_distance(const JointMotion& a, const JointMotion& b, double u0, double u1,
                                    double resolution, double share, double reached,
                                    double give_up) const {
-  double seen = reached;
-  double proven = 0.0;
-  std::vector<Interval> open = {{0.5 * (u0 + u1), 0.5 * (u1 - u0), 0}};
-  while (!open.empty()) {
-    const Interval interval = open.back();
-    open.pop_back();
-    const Expansion of_a = expand(a.over(interval.middle, interval.half));
-    const Expansion of_b = expand(b.over(interval.middle, interval.half));
-    seen = std::max(seen, (of_a.value - of_b.value).norm());
-    if (!(seen <= give_up)) return seen;
-    const double bound = bound_difference(of_a, of_b, interval.half);
-    if (bound <= seen * (1.0 + share) + resolution || interval.depth >= kDeepest) {
-      proven = std::max(proven, bound);
-    } else {
-      push_halves(open, interval);
-    }
-  }
-  return proven;
+  return bound_largest(u0, u1, {resolution, share, reached, give_up}, [&](const Interval& over) {
+    const Expansion of_a = expand(a.over(over.middle, over.half));
+    const Expansion of_b = expand(b.over(over.middle, over.half));
+    return Bounded{(of_a.value - of_b.value).norm(), bound_difference(of_a, of_b, over.half)};
+  });
+}
+
+double MotionSpace::angle(const JointVector& a, const JointVector& b) const {
+  return rotation_distance(arm_->pose(a).linear(), arm_->pose(b).linear());
+}
+
+double MotionSpace::bound_angle(const JointMotion& a, const JointMotion& b, double u0, double u1,
+                                double resolution, double share, double reached,
+                                double give_up) const {
+  return bound_largest(u0, u1, {resolution, share, reached, give_up}, [&](const Interval& over) {
+    const Turning of_a = expand_turn(a.over(over.middle, over.half), over.half);
+    const Turning of_b = expand_turn(b.over(over.middle, over.half), over.half);
+    const Eigen::Vector3d phi = rotation_log(of_b.rotation.transpose() * of_a.rotation);
+    return Bounded{phi.norm(), angle_bound(phi, of_a, of_b, over.half)};
+  });
 }
 
 MotionSpace::Nearest MotionSpace::nearest(const Vector& wanted, const Target& target) const {

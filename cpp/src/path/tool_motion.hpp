@@ -8,6 +8,7 @@
 #include <span>
 
 #include "path/chain_bounds.hpp"
+#include "path/turning.hpp"
 #include "viapoint/path/joint_path.hpp"
 
 namespace viapoint {
@@ -63,7 +64,7 @@ class RestMotion final : public JointMotion {
   LocalMotion local_;
 };
 
-/// Where two motions are compared.
+/// Where two motions are compared, and at the tool their orientations, too.
 class MotionSpace {
  public:
   /// In joint space, 2-norm over all joints.
@@ -84,6 +85,13 @@ class MotionSpace {
   [[nodiscard]] double bound_distance(const JointMotion& a, const JointMotion& b, double u0,
                                       double u1, double resolution, double share, double reached,
                                       double give_up) const;
+
+  /// Angle between the tool's orientations [rad]. @pre not the joints' own space
+  [[nodiscard]] double angle(const JointVector& a, const JointVector& b) const;
+  /// bound_distance() of that angle. @pre not the joints' own space
+  [[nodiscard]] double bound_angle(const JointMotion& a, const JointMotion& b, double u0, double u1,
+                                   double resolution, double share, double reached,
+                                   double give_up) const;
 
   /// A bound of the distance of every point of `a` from the nearest point of any of `targets`, all
   /// over [0, 1]; resolution, share and reached as above. Each subinterval of `a` is compared with
@@ -113,6 +121,7 @@ class MotionSpace {
   };
 
   [[nodiscard]] Expansion expand(const LocalMotion& local) const;
+  [[nodiscard]] Turning expand_turn(const LocalMotion& local, double half) const;
   [[nodiscard]] Vector point(const JointMotion& motion, double u) const;
   [[nodiscard]] Nearest nearest(const Vector& wanted, const Target& target) const;
   /// sup ‖a − b‖ over |t| <= half from the expansions of both about t = 0.

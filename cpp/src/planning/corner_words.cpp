@@ -1,10 +1,9 @@
 #include "planning/corner_words.hpp"
 
 #include <array>
-#include <cmath>
-#include <cstdio>
 #include <string_view>
 
+#include "viapoint/core/number_text.hpp"
 #include "viapoint/core/units.hpp"
 
 namespace viapoint::planning {
@@ -28,24 +27,21 @@ constexpr std::array kAdvice{
     Advice{"proven", "a larger zone, or a smaller turn between the two moves"},
 };
 
-/// Three digits, rounded down so that it still fits.
-std::string digits(double value) {
-  if (!(value > 0.0)) return "0";
-  const double unit = std::pow(10.0, std::floor(std::log10(value)) - 2.0);
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", std::floor(value / unit) * unit);
-  return text;
-}
-
 std::string smaller_zone(const CornerOutcome& corner) {
+  const std::string millimetres = rounded_down_text(corner.used / kMillimetre) + " * mm";
+  std::string angle;
+  if (corner.asked.bounds_angle()) {
+    angle = ", angle=" + rounded_down_text(corner.asked.angle / kDegree) + " * deg";
+  }
   switch (corner.asked.kind) {
     case ZoneKind::kJointDeviation:
-      return "zone=joint_deviation(" + digits(corner.used) + "), which fits";
+      return "zone=joint_deviation(" + rounded_down_text(corner.used) + "), which fits";
     case ZoneKind::kDeviation:
-      return "zone=deviation(" + digits(corner.used / kMillimetre) + " * mm), which fits";
+      return "zone=deviation(" + millimetres + angle + "), which fits";
     default:
       // Legs of unequal length: the shorter may still have no room for it.
-      return "zone=" + digits(corner.used / kMillimetre) + " * mm, as large as was used";
+      return "zone=" + (angle.empty() ? millimetres : "radius(" + millimetres + angle + ")") +
+             ", as large as was used";
   }
 }
 
@@ -56,6 +52,9 @@ std::vector<std::string> ways_out_of(const CornerOutcome& corner) {
   for (const Advice& advice : kAdvice) {
     if (corner.reason.find(advice.of) != std::string::npos) {
       ways.emplace_back(advice.way_out);
+      if (corner.angle_rules) {
+        ways.insert(ways.begin(), "a larger angle of the zone: it is used up before the size");
+      }
       break;
     }
   }

@@ -10,9 +10,12 @@
 #include <vector>
 
 #include "planning/leg_builder.hpp"
+#include "planning/leg_merger.hpp"
+#include "planning/speed_keeping.hpp"
 #include "planning/tool_changes.hpp"
 #include "planning/ways_out.hpp"
 #include "viapoint/core/number_text.hpp"
+#include "viapoint/core/units.hpp"
 
 namespace viapoint::planning {
 namespace {
@@ -32,6 +35,8 @@ class ItineraryWalk::Walk {
     begun_ = begin(program);
   }
 
+  void end() { merger_.flush(); }
+
   [[nodiscard]] bool begun() const { return begun_; }
 
   void take(const Step& step, int index) {
@@ -45,7 +50,9 @@ class ItineraryWalk::Walk {
 
   void operator()(const PtpMove& move) {
     warn_of_correction(move.target);
-    build(move.target, [&] { return builder_->ptp(move, at_); }, nullptr);
+    if (has_no_process()) {
+      build(move.target, [&] { return builder_->ptp(move, at_); }, nullptr);
+    }
   }
 
   void operator()(const LinMove& move) {
@@ -69,7 +76,7 @@ class ItineraryWalk::Walk {
     if (!move.points.empty()) goal = move.points.back();
     const auto leg = [this](const SplineMove& m) { return builder_->spline(m, at_); };
     if (move.space == SplineSpace::kJoint) {
-      build(goal, [&] { return leg(move); }, nullptr);
+      if (has_no_process()) build(goal, [&] { return leg(move); }, nullptr);
     } else {
       build_curve(move, goal, leg);
     }
@@ -83,6 +90,7 @@ class ItineraryWalk::Walk {
       return;
     }
     if (wait.seconds >= kShortestWait) outputs_here_ = 0;
+    merger_.flush();
     itinerary_.items.emplace_back(Dwell{step_, wait.seconds});
   }
 
@@ -98,6 +106,7 @@ class ItineraryWalk::Walk {
           {"put a short wait(0.01) between them"});
       return;
     }
+    merger_.flush();
     itinerary_.items.emplace_back(
         Output{step_, {static_cast<std::int16_t>(output.index), output.value}});
   }
@@ -193,7 +202,8 @@ class ItineraryWalk::Walk {
       leg.robot = robot_;
       at_ = leg.goal;
       outputs_here_ = 0;
-      itinerary_.items.emplace_back(std::move(leg));
+      if (std::optional<Problem> problem = speed_not_kept(*robot_, leg)) add(std::move(*problem));
+      merger_.add(std::move(leg));
     } catch (const MotionError& error) {
       Problem problem = error.problem();
       if (problem.code == ErrorCode::kZeroLength) {
@@ -226,6 +236,16 @@ class ItineraryWalk::Walk {
     }
   }
 
+  /// A move of the joints has no speed of the tool to hold.
+  bool has_no_process() {
+    if (!given_->options.process_speed) return true;
+    add(ErrorCode::kBadArgument,
+        "process_speed is a speed of the tool to be held, and this move is one of the joints",
+        {"a move of the tool: movel, movec, or spline(..., space=\"tool\")",
+         "leave process_speed out; scale= slows the joints down"});
+    return false;
+  }
+
   bool options_are_sound(const MoveOptions& options) {
     const size_t before = itinerary_.report.problems.size();
     const auto within = [&](const std::optional<double>& wish, const char* name, double most) {
@@ -246,8 +266,14 @@ class ItineraryWalk::Walk {
           "zone is " + number_text(options.zone.size) + "; it must be zero or more and finite",
           {"leave the zone out to stop at the point"});
     }
-    const bool at_tool =
-        options.zone.kind == ZoneKind::kRadius || options.zone.kind == ZoneKind::kDeviation;
+    if (options.zone.bounds_angle() && !(options.zone.angle > 0.0 && options.zone.angle <= kPi)) {
+      add(ErrorCode::kBadArgument,
+          "the angle of the zone is " + number_text(options.zone.angle) +
+              "; it must be above zero and at most pi",
+          {"leave the angle out to bound the position alone"});
+    }
+    const bool at_tool = options.zone.kind == ZoneKind::kRadius ||
+                         options.zone.kind == ZoneKind::kDeviation || options.zone.bounds_angle();
     if (at_tool && !robot_->has_kinematics()) {
       add(ErrorCode::kBadArgument,
           robot_->name() + " has no kinematics, so a zone at the tool means nothing to it",
@@ -293,6 +319,7 @@ class ItineraryWalk::Walk {
   LineTolerance tolerance_;
   const Step* given_ = nullptr;  ///< the present step
   Itinerary itinerary_;
+  LegMerger merger_{tolerance_, [this](Leg leg) { itinerary_.items.emplace_back(std::move(leg)); }};
   bool begun_ = false;
   JointVector at_;     ///< where the arm is, or was to be
   bool lost_ = false;  ///< at_ is not where the step before was to end
@@ -305,6 +332,7 @@ ItineraryWalk::ItineraryWalk(RobotPtr robot, const MotionProgram& program)
 ItineraryWalk::~ItineraryWalk() = default;
 bool ItineraryWalk::begun() const { return walk_->begun(); }
 void ItineraryWalk::take(const Step& step, int index) { walk_->take(step, index); }
+void ItineraryWalk::end() { walk_->end(); }
 Itinerary ItineraryWalk::found() { return walk_->found(); }
 
 Itinerary make_itinerary(RobotPtr robot, const MotionProgram& program) {
@@ -312,6 +340,7 @@ Itinerary make_itinerary(RobotPtr robot, const MotionProgram& program) {
   if (!walk.begun()) return walk.found();
   int step = 0;
   for (const Step& given : program.steps) walk.take(given, step++);
+  walk.end();
   Itinerary itinerary = walk.found();
   if (program.steps.empty()) {
     Problem problem;

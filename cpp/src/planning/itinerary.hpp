@@ -45,6 +45,8 @@ class ItineraryWalk {
   /// False where the program cannot begin: the report says why, and no step may be taken.
   [[nodiscard]] bool begun() const;
   void take(const Step& step, int index);
+  /// No step follows: what was held back is found, too.
+  void end();
   /// What was found since the last call.
   [[nodiscard]] Itinerary found();
 

@@ -2,11 +2,23 @@
 /// One move as geometry, before corners and time.
 #pragma once
 
+#include <variant>
+#include <vector>
+
 #include "viapoint/kinematics/robot_model.hpp"
 #include "viapoint/path/joint_path.hpp"
+#include "viapoint/planning/motion_planner.hpp"
 #include "viapoint/program/motion_program.hpp"
 
 namespace viapoint::planning {
+
+/// What a leg that was made of several deviates from them by, both ways.
+struct MergedLegs {
+  std::vector<CornerOutcome> points;  ///< what became of the points between them
+  double distance = 0.0;              ///< [m], in joint space [rad or m, 2-norm]
+  double turn = 0.0;                  ///< of the tool [rad]
+  double at_tool = 0.0;               ///< a bound of the distance there [m]
+};
 
 /// The whole way of one move, from point to point.
 struct Leg {
@@ -17,6 +29,8 @@ struct Leg {
   JointPath path;     ///< from start to goal; pieces carry scale, speed wishes and step
   MoveOptions options;
   bool cartesian = false;
+  std::variant<std::monostate, PtpMove, LinMove> straight;  ///< the move, where it is a line
+  MergedLegs merged;
   /// What the program allows the tool; of no meaning in joint space.
   [[nodiscard]] ToolLimits tool_limits() const {
     ToolLimits limits;

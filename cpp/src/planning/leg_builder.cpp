@@ -60,6 +60,7 @@ Leg LegBuilder::ptp(const PtpMove& move, const JointVector& start) const {
     throw MotionError(ErrorCode::kZeroLength, "the move goes nowhere: the arm is already there");
   }
   leg.path.append(JointPiece::line(leg.start, leg.goal, length));
+  leg.straight = move;
   return leg;
 }
 
@@ -80,7 +81,9 @@ Leg LegBuilder::leg_of(const JointVector& start, Insertion inserted) {
 }
 
 Leg LegBuilder::lin(const LinMove& move, const JointVector& start) const {
-  return travel(way_of(move, robot_, start), start);
+  Leg leg = travel(way_of(move, robot_, start), start);
+  leg.straight = move;
+  return leg;
 }
 
 Leg LegBuilder::circ(const CircMove& move, const JointVector& start) const {

@@ -92,7 +92,10 @@ const JointPiece& PathTimer::piece(std::size_t number) const {
 
 std::vector<ToolLimits> PathTimer::tool() const {
   std::vector<ToolLimits> limits;
-  for (const std::size_t number : timing_.number) limits.push_back(piece(number).tool);
+  for (const std::size_t number : timing_.number) {
+    limits.push_back(piece(number).tool);
+    limits.back().joint_share = piece(number).scale;
+  }
   const bool any = std::any_of(limits.begin(), limits.end(), [](const auto& l) { return l.any(); });
   return any ? limits : std::vector<ToolLimits>();
 }

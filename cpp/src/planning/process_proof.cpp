@@ -1,7 +1,6 @@
 #include "planning/process_proof.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <utility>
@@ -14,52 +13,12 @@ namespace {
 /// Rounding of a speed that is kept as a limit.
 constexpr double kAbove = 1e-9;
 
-/// Value, slope and bend of Σ c_k u^k.
-std::array<double, 3> at(const std::array<double, 6>& c, double u) {
-  return {c[0] + u * (c[1] + u * (c[2] + u * (c[3] + u * (c[4] + u * c[5])))),
-          c[1] + u * (2 * c[2] + u * (3 * c[3] + u * (4 * c[4] + u * 5 * c[5]))),
-          2 * c[2] + u * (6 * c[3] + u * (12 * c[4] + u * 20 * c[5]))};
-}
-
-/// A vector of the tool at u: its square with two derivatives, and its acceleration's parts.
-struct RateAt {
-  Eigen::Vector3d value, slope, bend;
-};
-
-RateAt rate_at(const ToolRate& rate, double u) {
-  RateAt result;
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto [value, slope, bend] = at(rate.coefficients[static_cast<size_t>(axis)], u);
-    result.value[axis] = value;
-    result.slope[axis] = slope;
-    result.bend[axis] = bend;
-  }
-  return result;
-}
-
-/// u and its derivatives by time.
-struct Pace {
-  double u = 0.0, rate = 0.0, change = 0.0, jerk = 0.0;
-};
-
 Pace pace_of(const TrajectoryPiece& piece, double x) {
-  const auto [u, first, second] = at(piece.timing, x);
+  const auto [u, first, second] = value_slope_bend(piece.timing, x);
   const auto& t = piece.timing;
   const double third = 6 * t[3] + x * (24 * t[4] + x * 60 * t[5]);
   const double d = piece.duration;
   return {u, first / d, second / (d * d), third / (d * d * d)};
-}
-
-/// The pace at u that keeps the tool's speed: u̇² = v² / f with f = ‖p_u‖², so ü = -v² f' / 2f² and
-/// u⃛ = u̇ dü/du.
-Pace pace_at_speed(const RateAt& w, double u, double speed) {
-  const double f = w.value.squaredNorm();
-  if (!(f > 0.0)) return {u, 0.0, 0.0, 0.0};
-  const double f1 = 2.0 * w.value.dot(w.slope);
-  const double f2 = 2.0 * (w.slope.squaredNorm() + w.value.dot(w.bend));
-  const double v2 = speed * speed, rate = speed / std::sqrt(f);
-  return {u, rate, -0.5 * v2 * f1 / (f * f),
-          rate * -0.5 * v2 * (f2 / (f * f) - 2.0 * f1 * f1 / (f * f * f))};
 }
 
 }  // namespace
@@ -116,10 +75,10 @@ void ProcessProof::end() {
   if (!open_) return;
   open_ = false;
   ProcessStretch& stretch = stretches_.back();
-  const Ruling& ruling = holding_.share > 1.0 ? holding_ : using_;
+  const Ruling& ruling = holding_.slower > 1.0 ? holding_ : using_;
   stretch.limit = ruling.limit;
   stretch.joint = ruling.joint;
-  if (holding_.share <= 1.0 && rests_) {
+  if (holding_.slower <= 1.0 && rests_) {
     stretch.limit = "rest";
     stretch.joint.reset();
   }
@@ -130,29 +89,17 @@ void ProcessProof::judge(const JointLimits& limits, const TrajectoryPiece& piece
   constexpr int kParts = 8;
   const auto look = [&](Ruling& worst, const Pace& pace, const RateAt& linear,
                         const RateAt& angular) {
-    // Compared by how much slower they want it.
-    const auto take = [&](double share, double root, const char* name, std::optional<int> joint) {
-      const double slower = std::pow(share, root);
-      if (slower > worst.share) worst = {slower, name, joint};
-    };
     TrajectoryPiece steady = piece;
     steady.duration = 1.0;
     steady.timing = {pace.u, pace.rate, 0.5 * pace.change, pace.jerk / 6.0, 0.0, 0.0};
-    const JointState state = steady.at(0.0);
-    for (int i = 0; i < limits.joints(); ++i) {
-      take(std::abs(state.qd[i]) / limits.velocity[i], 1.0, "velocity", i);
-      take(std::abs(state.qdd[i]) / limits.acceleration[i], 1.0 / 2.0, "acceleration", i);
-      take(std::abs(state.qddd[i]) / limits.jerk[i], 1.0 / 3.0, "jerk", i);
-    }
+    worst.take(limits, rates.limits.joint_share, steady.at(0.0));
     const auto change = [&](const RateAt& w) {
       return (w.slope * pace.rate * pace.rate + w.value * pace.change).norm();
     };
     const ToolLimits& tool = rates.limits;
-    take(change(linear) / tool.acceleration, 0.5, "tool acceleration", std::nullopt);
-    take(angular.value.norm() * pace.rate / tool.angular_speed, 1.0, "tool angular speed",
-         std::nullopt);
-    take(change(angular) / tool.angular_acceleration, 0.5, "tool angular acceleration",
-         std::nullopt);
+    worst.take(change(linear) / tool.acceleration, 2, "tool acceleration");
+    worst.take(angular.value.norm() * pace.rate / tool.angular_speed, 1, "tool angular speed");
+    worst.take(change(angular) / tool.angular_acceleration, 2, "tool angular acceleration");
   };
   for (int k = 0; k <= kParts; ++k) {
     const Pace pace = pace_of(piece, static_cast<double>(k) / kParts);
@@ -167,7 +114,16 @@ void ProcessProof::judge(const JointLimits& limits, const TrajectoryPiece& piece
 
 std::vector<ProcessStretch> ProcessProof::take() {
   end();
-  return std::move(stretches_);
+  return std::exchange(stretches_, {});
+}
+
+std::vector<ProcessStretch> ProcessProof::take_ended() {
+  std::vector<ProcessStretch> ended = std::exchange(stretches_, {});
+  if (open_) {
+    stretches_.push_back(std::move(ended.back()));
+    ended.pop_back();
+  }
+  return ended;
 }
 
 Problem warning_of(const ProcessStretch& stretch) {

@@ -2,10 +2,9 @@
 /// Where a process speed is proven to be held, and what rules where it is not.
 #pragma once
 
-#include <optional>
-#include <string>
 #include <vector>
 
+#include "planning/tool_pace.hpp"
 #include "viapoint/core/joint_limits.hpp"
 #include "viapoint/path/tool_rates.hpp"
 #include "viapoint/planning/motion_planner.hpp"
@@ -19,16 +18,12 @@ class ProcessProof {
   /// @param time where the piece begins [s]
   void add(const JointLimits& limits, const TrajectoryPiece& piece, const ToolRates& rates,
            double time);
+  /// What was not held since the last call; nothing follows.
   [[nodiscard]] std::vector<ProcessStretch> take();
+  /// The same where more follows: a stretch that may go on is left for the next call.
+  [[nodiscard]] std::vector<ProcessStretch> take_ended();
 
  private:
-  /// A limit, and how much of it something takes.
-  struct Ruling {
-    double share = 0.0;
-    std::string limit;
-    std::optional<int> joint;
-  };
-
   void begin(const TrajectoryPiece& piece, double speed, double time);
   void end();
   void judge(const JointLimits& limits, const TrajectoryPiece& piece, const ToolRates& rates);

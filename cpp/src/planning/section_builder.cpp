@@ -1,6 +1,7 @@
 #include "planning/section_builder.hpp"
 
 #include <cstdio>
+#include <iterator>
 #include <utility>
 
 #include "planning/corner_fit.hpp"
@@ -65,6 +66,7 @@ void SectionBuilder::turn(bool corner_after) {
 }
 
 bool SectionBuilder::round(bool corner_after) {
+  tell_merged();
   const Leg& after = *next_;
   const double room_before = kShareTowardsStop * tail_.length();
   const double room_after =
@@ -74,6 +76,7 @@ bool SectionBuilder::round(bool corner_after) {
   outcome.move = leg_->step;
   outcome.asked = leg_->options.zone;
   outcome.reason = corner.reason;
+  outcome.angle_rules = corner.angle_rules;
   if (!corner.possible) {
     stop(std::move(outcome));
     return false;
@@ -97,6 +100,7 @@ bool SectionBuilder::round(bool corner_after) {
   append_blend(corner.blend, leg_->step, after.step);
   tail_ = std::move(rest);
   outcome.used = corner.used;
+  outcome.used_angle = corner.used_angle;
   outcome.cut = corner.tool_deviation;
   part().corners.push_back(std::move(outcome));
   return true;
@@ -128,7 +132,15 @@ void SectionBuilder::append_blend(const JointPiece& blend, int step_before, int 
   part().path.append(std::move(second));
 }
 
+void SectionBuilder::tell_merged() {
+  std::vector<CornerOutcome> points = std::exchange(leg_->merged.points, {});
+  auto& corners = part().corners;
+  corners.insert(corners.end(), std::make_move_iterator(points.begin()),
+                 std::make_move_iterator(points.end()));
+}
+
 void SectionBuilder::finish() {
+  tell_merged();
   append(part().path, tail_);
   part().ends = true;
   leg_ = std::move(next_);

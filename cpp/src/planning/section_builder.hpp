@@ -42,6 +42,8 @@ class SectionBuilder {
   void turn(bool corner_after);
   [[nodiscard]] bool round(bool corner_after);
   void stop(CornerOutcome outcome);
+  /// What became of the points that the present leg was merged of.
+  void tell_merged();
   [[nodiscard]] double gain_of(const JointPath& head, const JointPiece& blend,
                                const JointPath& rest) const;
   void append_blend(const JointPiece& blend, int step_before, int step_after);

@@ -61,20 +61,17 @@ class StreamPlanner::Line {
     const int index = steps_++;
     known_.push_back({index, step.source});
     walk_.take(step, index);
-    planning::Itinerary found = walk_.found();
-    for (Problem& problem : found.report.problems) {
-      if (problem.severity == Severity::kError) {
-        end();
-        throw MotionError(std::move(problem));
-      }
-      warnings_.push_back(std::move(problem));
+    if (auto problem = take_found()) {
+      end();
+      throw MotionError(std::move(*problem));
     }
-    for (Item& item : found.items) take(std::move(item));
   }
 
   void end() {
     if (ended_) return;
     ended_ = true;
+    walk_.end();
+    (void)take_found();  // no step, no error
     rest_here();
   }
 
@@ -89,11 +86,29 @@ class StreamPlanner::Line {
   [[nodiscard]] int stops() const { return stops_; }
 
  private:
+  /// Takes over what the steps so far came to. @returns the first error
+  std::optional<Problem> take_found() {
+    planning::Itinerary found = walk_.found();
+    for (Item& item : found.items) take(std::move(item));
+    std::optional<Problem> error;
+    for (Problem& problem : found.report.problems) {
+      if (problem.severity != Severity::kError) {
+        warnings_.push_back(std::move(problem));
+      } else if (!error) {
+        error = std::move(problem);
+      }
+    }
+    return error;
+  }
+
   void take(Item item) {
     if (auto* leg = std::get_if<Leg>(&item)) {
       if (leg->robot != arm_) change_tool(leg->robot);
-      known_.back().position_deviation = leg->position_deviation;
-      known_.back().angle_deviation = leg->angle_deviation;
+      for (Known& known : known_) {
+        if (known.step != leg->step) continue;
+        known.position_deviation = leg->position_deviation;
+        known.angle_deviation = leg->angle_deviation;
+      }
       zone_ = leg->options.zone;
       last_leg_ = leg->step;
       at_ = leg->goal;
@@ -143,7 +158,8 @@ class StreamPlanner::Line {
     const size_t left = part.path.pieces().size() - used_;
     const bool all = left <= kMostPieces;
     const bool ends = all && part.ends;
-    const int legs = static_cast<int>(part.corners.size());
+    const auto legs = std::count_if(part.corners.begin(), part.corners.end(),
+                                    [](const auto& corner) { return !corner.merged_into; });
     if (all && !ends && legs < (at_once ? 1 : wanted_legs_)) return std::nullopt;
     MotionChunk chunk;
     if (!timer_) {
@@ -169,8 +185,9 @@ class StreamPlanner::Line {
     chunk.begin = section_begun_ ? leave : duration_;
     section_begun_ = true;
     wanted_legs_ = ends ? kFirstLegs : std::min(kMostLegs, 2 * wanted_legs_);
-    finish(chunk, *section_arm_, timer_->timing().pieces, timer_->tool());
+    finish(chunk, section_arm_, timer_->timing().pieces, timer_->tool());
     if (ends) {
+      follow_process(duration_);
       timer_.reset();
       chunk.corners.insert(chunk.corners.end(), tool_changes_.begin(), tool_changes_.end());
       tool_changes_.clear();
@@ -184,7 +201,7 @@ class StreamPlanner::Line {
     chunk.begin = duration_;
     const Stage stage = std::move(ready_.front());
     ready_.pop_front();
-    finish(chunk, *stage.arm, {std::get<TrajectoryPiece>(stage.what)});
+    finish(chunk, stage.arm, {std::get<TrajectoryPiece>(stage.what)});
     warn_of(chunk);
     return chunk;
   }
@@ -206,7 +223,7 @@ class StreamPlanner::Line {
     }
     MotionChunk chunk;
     chunk.begin = duration_;
-    finish(chunk, *arm_, std::move(pieces));
+    finish(chunk, arm_, std::move(pieces));
     warn_of(chunk);
     return chunk;
   }
@@ -220,9 +237,23 @@ class StreamPlanner::Line {
     output_times_.clear();
   }
 
-  void finish(MotionChunk& chunk, const RobotModel& arm, std::vector<TrajectoryPiece> pieces,
-              const std::vector<ToolLimits>& tool = {}) {
+  /// Looks for process speeds that are not held in the chunk handed out last, run until `end`.
+  void follow_process(double end) {
+    if (std::exchange(followed_, true)) return;
+    std::vector<TrajectoryPiece> run;
+    planning::append_until(run, last_, end);
+    time_ = planning::add_process(process_, *last_arm_, run, last_tool_, time_);
+  }
+
+  void finish(MotionChunk& chunk, const RobotPtr& of, std::vector<TrajectoryPiece> pieces,
+              std::vector<ToolLimits> tool = {}) {
+    const RobotModel& arm = *of;
     drop_passed(chunk.begin);
+    follow_process(chunk.begin);
+    // A stretch may be told one chunk after its move.
+    if (!last_.empty()) {
+      while (known_.size() > 1 && known_.front().step < last_.front().move) known_.pop_front();
+    }
     const std::vector<size_t> places = planning::attach_outputs(pieces, outputs_);
     const std::optional<JointState> from = state_at(chunk.begin);
     const double manipulability = planning::least_manipulability(arm, pieces);
@@ -239,9 +270,11 @@ class StreamPlanner::Line {
     for (Problem& problem : planning::problems_of(certificate.tool)) {
       certificate.problems.push_back(std::move(problem));
     }
-    const int first = chunk.motion.pieces().front().move;
-    while (known_.size() > 1 && known_.front().step < first) known_.pop_front();
+    last_arm_ = of;
+    last_tool_ = std::move(tool);
+    followed_ = false;
     for (const Known& known : known_) {
+      if (known.step < chunk.motion.pieces().front().move) continue;
       if (known.step > chunk.motion.pieces().back().move) break;
       certificate.path_deviation = std::max(certificate.path_deviation, known.position_deviation);
       certificate.angle_deviation = std::max(certificate.angle_deviation, known.angle_deviation);
@@ -270,6 +303,13 @@ class StreamPlanner::Line {
       if (corner.reason.empty()) continue;
       Problem problem = planning::warning_of(corner);
       problem.move = corner.move;
+      locate(problem);
+      chunk.warnings.push_back(std::move(problem));
+    }
+    chunk.process_stretches = timer_ ? process_.take_ended() : process_.take();
+    for (const ProcessStretch& stretch : chunk.process_stretches) {
+      Problem problem = planning::warning_of(stretch);
+      problem.move = stretch.move;
       locate(problem);
       chunk.warnings.push_back(std::move(problem));
     }
@@ -311,6 +351,11 @@ class StreamPlanner::Line {
   double duration_ = 0.0;              ///< of the chunk handed out last
   std::vector<double> output_times_;   ///< in it, of the first of outputs_
   std::vector<TrajectoryPiece> last_;  ///< its pieces
+  std::vector<ToolLimits> last_tool_;  ///< what they allow the tool
+  RobotPtr last_arm_;
+  bool followed_ = true;            ///< its process speeds have been looked at
+  double time_ = 0.0;               ///< up to where they were [s from the first one's beginning]
+  planning::ProcessProof process_;  ///< of all chunks up to there
 };
 
 StreamPlanner::StreamPlanner(RobotPtr robot, const MotionProgram& program)

@@ -48,6 +48,20 @@ void ToolProof::add(const RobotModel& robot, std::span<const TrajectoryPiece> pi
   }
 }
 
+double add_process(ProcessProof& process, const RobotModel& robot,
+                   std::span<const TrajectoryPiece> pieces, std::span<const ToolLimits> limits,
+                   double time) {
+  for (size_t k = 0; k < pieces.size(); ++k) {
+    if (k < limits.size() && limits[k].hold_speed) {
+      ToolRates rates = tool_rates(robot.forward(), geometry_of(pieces[k]));
+      rates.limits = limits[k];
+      process.add(robot.limits(), pieces[k], rates, time);
+    }
+    time += pieces[k].duration;
+  }
+  return time;
+}
+
 std::vector<Problem> problems_of(const ToolExtrema& extrema) {
   std::vector<Problem> problems;
   const auto look = [&](const Extremum& worst, ErrorCode code, const char* name, const char* unit) {

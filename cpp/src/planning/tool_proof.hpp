@@ -34,6 +34,12 @@ class ToolProof {
   std::vector<ToolSpan> spans_;
 };
 
+/// Adds the pieces that have a process speed. Arguments as of ToolProof::add().
+/// @returns where the last piece ends [s]
+double add_process(ProcessProof& process, const RobotModel& robot,
+                   std::span<const TrajectoryPiece> pieces, std::span<const ToolLimits> limits,
+                   double time);
+
 /// What the extrema break, worst first.
 [[nodiscard]] std::vector<Problem> problems_of(const ToolExtrema& extrema);
 

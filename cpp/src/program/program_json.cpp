@@ -80,6 +80,7 @@ Json json_of(const Step& step) {
   const MoveOptions& options = step.options;
   if (options.zone.kind != ZoneKind::kFine) {
     json["zone"] = {{word_of(options.zone.kind, kZones), options.zone.size}};
+    if (options.zone.bounds_angle()) json["zone"]["angle"] = options.zone.angle;
   }
   if (options.speed) json["speed"] = *options.speed;
   if (options.acceleration) json["acceleration"] = *options.acceleration;
@@ -107,23 +108,27 @@ TimedMove timed_of(const Node& node) {
   return move;
 }
 
-Zone zone_of(const Node& node) {
-  node.require_object();
-  for (const auto& word : kZones) {
-    if (!node.has(word.text)) continue;
-    node.only({word.text});
-    const double size = node.at(word.text).number();
-    if (size < 0.0) node.at(word.text).refuse("a size of zero or more");
-    return {word.value, size};
-  }
-  node.refuse("{\"radius\": m}, {\"deviation\": m} or {\"joint_deviation\": rad}");
-}
-
 std::optional<double> wish(const Node& node, const char* key) {
   if (!node.has(key)) return std::nullopt;
   const double value = node.at(key).number();
   if (!(value > 0.0)) node.at(key).refuse("a number above zero");
   return value;
+}
+
+Zone zone_of(const Node& node) {
+  node.require_object();
+  for (const auto& word : kZones) {
+    if (!node.has(word.text)) continue;
+    node.only({word.text, "angle"});
+    const double size = node.at(word.text).number();
+    if (size < 0.0) node.at(word.text).refuse("a size of zero or more");
+    Zone zone{word.value, size};
+    if (const auto angle = wish(node, "angle")) zone.angle = *angle;
+    return zone;
+  }
+  node.refuse(
+      "{\"radius\": m}, {\"deviation\": m} or {\"joint_deviation\": rad}, each with an \"angle\" "
+      "[rad] or without");
 }
 
 std::optional<Pose> pose_in(const Node& node) {

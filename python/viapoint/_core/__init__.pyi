@@ -661,6 +661,7 @@ class MoveOptions:
         scale: typing.SupportsFloat | typing.SupportsIndex | None = None,
         zone: str = "fine",
         size: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+        angle: typing.SupportsFloat | typing.SupportsIndex | None = None,
     ) -> None: ...
 
 class MotionProgram:
@@ -950,9 +951,19 @@ class Corner:
     """
     def __repr__(self) -> str: ...
     @property
+    def angle_rules(self) -> bool:
+        """
+        The angle was used up before the size.
+        """
+    @property
     def asked(self) -> float:
         """
         Size asked for.
+        """
+    @property
+    def asked_angle(self) -> float | None:
+        """
+        Angle asked for [rad]; None for a zone without.
         """
     @property
     def cut(self) -> float:
@@ -963,6 +974,11 @@ class Corner:
     def kind(self) -> str:
         """
         "fine", "radius", "deviation" or "joint_deviation".
+        """
+    @property
+    def merged_into(self) -> int | None:
+        """
+        Index of the move whose straight leg the point lies so near, by `used`, that it makes no corner; or None.
         """
     @property
     def move(self) -> int:
@@ -983,6 +999,11 @@ class Corner:
     def used(self) -> float:
         """
         Size really used, in the zone's own unit.
+        """
+    @property
+    def used_angle(self) -> float:
+        """
+        Angle really used, proven [rad]; 0 for a zone without.
         """
 
 class ProcessStretch:

@@ -74,6 +74,9 @@ class Corner:
     cut: float
     before: tuple[int, ...]
     after: tuple[int, ...]
+    angle: float | None = None
+    """Bound of the tool's orientation besides [rad], and what is claimed to be used of it."""
+    used_angle: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -239,7 +242,8 @@ def _orientation(value: object, place: str) -> Orientation:
 
 def corner_in(value: object, place: str, legs: int, paths: int) -> Corner:
     """Read one corner."""
-    given = members(value, place, "leg kind asked stopped used cut reason before after")
+    keys = "leg kind asked stopped used cut reason before after"
+    given = members(value, place, keys, "angle used_angle")
     text(given["reason"], f"{place}.reason")
     leg = integer(given["leg"], f"{place}.leg", 0, legs)
     cuts = []
@@ -258,6 +262,8 @@ def corner_in(value: object, place: str, legs: int, paths: int) -> Corner:
         cut=number(given["cut"], f"{place}.cut", 0.0),
         before=cuts[0],
         after=cuts[1],
+        angle=number(given["angle"], f"{place}.angle", 0.0, np.pi) if "angle" in given else None,
+        used_angle=number(given.get("used_angle", 0.0), f"{place}.used_angle", 0.0, np.pi),
     )
 
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 import numpy as np
 
 from ._balls import Array, Ball, Indices
-from ._chain import Chain, tool_point
+from ._chain import Chain, tool_point, tool_rotation
 from ._deviation_checks import place_on
 from ._file_parts import Corner
 from ._findings import Finding, Verdict
@@ -35,8 +37,18 @@ def check_zones(motion: MotionFile, verdict: Verdict) -> None:
             continue
         before = len(verdict.findings)
         check = _RadiusCheck if kind == "radius" else _DeviationCheck
-        worst = check(motion, corners).judge(verdict)
+        space: Space = "joints" if kind == "joint_deviation" else "tool"
+        worst = check(motion, corners, space).judge(verdict)
         verdict.prove(name, f"{worst:.6f} of their size", "1, and as claimed", before)
+        turning = [k for k in corners if motion.corners[k].angle is not None]
+        if not turning:
+            continue
+        if motion.chain is None:
+            verdict.findings.append(Finding("a zone's angle for an arm without a chain"))
+            continue
+        before = len(verdict.findings)
+        worst = check(motion, turning, "turn").judge(verdict)
+        verdict.prove(f"{name}, angle", f"{worst:.6f} of theirs", "1, and as claimed", before)
 
 
 def _pairs(motion: MotionFile, corners: list[int]) -> tuple[list[int], list[int], list[bool]]:
@@ -59,44 +71,64 @@ def _pairs(motion: MotionFile, corners: list[int]) -> tuple[list[int], list[int]
     return paths, owners, cut
 
 
+Space = Literal["joints", "tool", "turn"]
+"""Where distances are taken: of the joints, of tool points, or of the tool's unit quaternions."""
+
+
+def quaternion_distance(angle: Array) -> Array:
+    """Distance of two unit quaternions, of one sign, that are an angle apart."""
+    result: Array = 2.0 * np.sin(0.25 * angle)
+    return result
+
+
 class _Check:
     what = ""
+    what_turns = ""
 
-    def __init__(self, motion: MotionFile, corners: list[int]) -> None:
+    def __init__(self, motion: MotionFile, corners: list[int], space: Space) -> None:
         self.motion = motion
+        self.space = space
         paths, owners, cut = _pairs(motion, corners)
         self.paths = np.array(paths, dtype=np.intp)
         self.owners = np.array(owners, dtype=np.intp)
         self.cut = np.array(cut, dtype=bool)
-        self.in_joints = motion.corners[corners[0]].kind == "joint_deviation"
 
     def judge(self, verdict: Verdict) -> float:
         """Add what is wrong; return the worst share of a zone that is proven."""
         zones: list[Corner] = [self.motion.corners[k] for k in self.owners]
-        used = np.array([c.used for c in zones]) * (1.0 + SHARE_SLACK) + 1e-12
+        claimed = np.array([c.used_angle if self.space == "turn" else c.used for c in zones])
+        asked = np.array([c.angle or 0.0 if self.space == "turn" else c.asked for c in zones])
+        sizes, whole = claimed, asked
+        if self.space == "turn":
+            sizes, whole = quaternion_distance(claimed), quaternion_distance(asked)
+        used = sizes * (1.0 + SHARE_SLACK) + 1e-12
         worst = prove_below(self.bounds, used, parts=4)
+        reached = worst.bound
+        if self.space == "turn":
+            reached = 4.0 * np.arcsin(np.minimum(0.5 * reached, 1.0))
         for item in np.flatnonzero(~worst.proven):
             verdict.findings.append(
                 Finding(
-                    f"{self.what} (corner {self.owners[item]})",
-                    value=float(worst.bound[item]),
-                    limit=zones[item].used,
+                    f"{self.what_turns if self.space == 'turn' else self.what} "
+                    f"(corner {self.owners[item]})",
+                    value=float(reached[item]),
+                    limit=float(claimed[item]),
                     **place_on(self.motion, int(self.paths[item]), float(worst.at[item])),
                 )
             )
-        return float((worst.bound / np.array([max(c.asked, 1e-300) for c in zones])).max())
+        return float((worst.bound / np.maximum(whole, 1e-300)).max())
 
     def bounds(self, items: Indices, middle: Array, half: Array) -> tuple[Array, Array]:
         """Bound what the zone limits: each kind of zone in its own way."""
         raise NotImplementedError
 
     def points(self, paths: Indices, middle: Array, half: Array, tool: Array) -> Ball:
-        """Jets of the tool point, or of the joints where the zone is in joints."""
+        """Jets of what is compared."""
         rows = np.moveaxis(self.motion.paths[paths], 0, -1)
         joints = polynomial_jets(Ball.exact(rows), middle, half)
-        if self.in_joints or self.motion.chain is None:
+        if self.space == "joints" or self.motion.chain is None:
             return joints
-        return tool_point(self.motion.chain, tool, joints)
+        return compared(self.motion.chain, tool, joints, self.space)
 
     def tools(self, items: Indices) -> Indices:
         """Tool of each item."""
@@ -106,6 +138,7 @@ class _Check:
 
 class _RadiusCheck(_Check):
     what = "the path leaves the zone"
+    what_turns = "the tool turns out of the zone's angle"
 
     def bounds(self, items: Indices, middle: Array, half: Array) -> tuple[Array, Array]:
         """Distance from the corner's point."""
@@ -126,18 +159,19 @@ class _RadiusCheck(_Check):
 
 class _DeviationCheck(_Check):
     what = "path and legs are farther apart than claimed"
+    what_turns = "the tool is turned farther from the legs than claimed"
 
-    def __init__(self, motion: MotionFile, corners: list[int]) -> None:
-        super().__init__(motion, corners)
+    def __init__(self, motion: MotionFile, corners: list[int], space: Space) -> None:
+        super().__init__(motion, corners, space)
         u = np.linspace(0.0, 1.0, SAMPLES)
         powers = np.vander(u, 6, increasing=True)
         q = np.einsum("sk,mkn->msn", powers, motion.paths[self.paths])
         self.lines = q
-        if not self.in_joints and motion.chain is not None:
+        if space != "joints" and motion.chain is not None:
             tools = self.tools(np.arange(len(self.paths)))
             self.lines = np.stack(
                 [
-                    points_at(motion.chain, motion.tools[t], row)
+                    points_at(motion.chain, motion.tools[t], row, space)
                     for t, row in zip(tools, q, strict=True)
                 ]
             )
@@ -182,16 +216,23 @@ class _DeviationCheck(_Check):
     def _at(self, item: int, u: Array) -> Array:
         """Points in plain rounding."""
         q: Array = np.vander(u, 6, increasing=True) @ self.motion.paths[self.paths[item]]
-        if self.in_joints or self.motion.chain is None:
+        if self.space == "joints" or self.motion.chain is None:
             return q
         tool = self.motion.tools[int(self.tools(np.array([item]))[0])]
-        return points_at(self.motion.chain, tool, q)
+        return points_at(self.motion.chain, tool, q, self.space)
 
 
-def points_at(chain: Chain, tool: Array, q: Array) -> Array:
-    """Tool points of joints (k, n), in plain rounding, (k, 3)."""
+def compared(chain: Chain, tool: Array, joints: Ball, space: Space) -> Ball:
+    """Jets of the tool point, or of the tool's unit quaternion, whose sign goes with the joints."""
+    if space == "turn":
+        return tool_rotation(chain, tool, joints)
+    return tool_point(chain, tool, joints)
+
+
+def points_at(chain: Chain, tool: Array, q: Array, space: Space = "tool") -> Array:
+    """Return what is compared of joints (k, n), in plain rounding, (k, 3) or (k, 4)."""
     jets = polynomial_jets(Ball.exact(q.T[None]), np.zeros(len(q)), np.zeros(len(q)))
-    points: Array = tool_point(chain, tool, jets).mid[0, :, : len(q)].T
+    points: Array = compared(chain, tool, jets, space).mid[0, :, : len(q)].T
     return points
 
 

@@ -7,24 +7,20 @@
 #include <vector>
 
 #include "path/teaching_arms.hpp"
+#include "path/tool_corners.hpp"
 #include "problem_count.hpp"
 #include "viapoint/core/error.hpp"
-#include "viapoint/path/insertion.hpp"
 
 namespace viapoint {
 namespace {
+
+using testing::tool_corner;
+using testing::unit_vector;
 
 JointPath joint_line(const JointVector& a, const JointVector& b, double length) {
   JointPath path;
   path.append(JointPiece::line(a, b, length));
   return path;
-}
-
-JointVector unit_vector(std::mt19937& random, int joints) {
-  std::normal_distribution<double> normal;
-  JointVector v(joints);
-  for (int i = 0; i < joints; ++i) v[i] = normal(random);
-  return v.normalized();
 }
 
 /// Points of the joint or tool space along a stretch.
@@ -165,42 +161,6 @@ TEST(RoundCorner, UsesAJointZoneFullyOnThousandsOfJointLines) {
   EXPECT_GT(full, problems(500));
 }
 
-/// Two straight tool lines that meet, inserted on the PUMA.
-struct ToolCorner {
-  JointPath before, after;
-  Eigen::Vector3d point;
-};
-
-std::optional<ToolCorner> tool_corner(const ForwardKinematics& arm, unsigned seed) {
-  std::mt19937 random(seed);
-  JointVector middle = testing::random_joints(random, testing::puma560_limits());
-  middle[2] = (20.0 + 60.0 * (seed % 3) / 2.0) * kDegree;
-  middle[4] = (30.0 + 40.0 * (seed % 5) / 4.0) * kDegree;
-  const Pose pose = arm.pose(middle);
-  const JointVector directions = unit_vector(random, 12);
-  const auto end_of = [&](int i) {
-    Pose end = pose;
-    end.translation() += 0.3 * directions.segment<3>(i);
-    end.rotate(rotation_exp(0.6 * Eigen::Vector3d(directions.segment<3>(i + 3))));
-    return end;
-  };
-  const JointLimits limits = testing::no_position_limits(6);
-  ToolCorner result;
-  result.point = pose.translation();
-  try {
-    const LineCurve back(pose, end_of(0));
-    const JointVector start = insert_curve(arm, limits, back, middle, {}).knots.back();
-    const Insertion first = insert_curve(arm, limits, LineCurve(end_of(0), pose), start, {});
-    for (const JointPiece& piece : first.pieces) result.before.append(piece);
-    const Insertion second =
-        insert_curve(arm, limits, LineCurve(pose, end_of(6)), first.knots.back(), {});
-    for (const JointPiece& piece : second.pieces) result.after.append(piece);
-  } catch (const MotionError&) {
-    return std::nullopt;
-  }
-  return result;
-}
-
 TEST(RoundCorner, StaysWithinTheRadiusAndUsesIt) {
   const ForwardKinematics arm = testing::puma560();
   int full = 0;
@@ -222,7 +182,8 @@ TEST(RoundCorner, StaysWithinTheRadiusAndUsesIt) {
          {along(&arm, blend, 0.0, blend.length(), 500),
           along(&arm, legs->before, length1 - corner.cut_before, length1, 500),
           along(&arm, legs->after, 0.0, corner.cut_after, 500)}) {
-      for (const auto& p : points) farthest = std::max(farthest, (p - legs->point).norm());
+      for (const auto& p : points)
+        farthest = std::max(farthest, (p - legs->corner.translation()).norm());
     }
     // The corner's own tool point may lie an insertion tolerance away from the given one.
     ASSERT_LE(farthest, radius + 1e-7);

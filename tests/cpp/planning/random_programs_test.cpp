@@ -139,7 +139,10 @@ TEST_P(RandomPrograms, EndInACertifiedMotionOrANamedError) {
     for (const Problem& problem : report.problems) {
       ASSERT_NE(problem.code, ErrorCode::kInternal) << problem.describe();
       ASSERT_NE(problem.code, ErrorCode::kDiscontinuous) << problem.describe();
-      ASSERT_NE(problem.code, ErrorCode::kVelocityLimit) << problem.describe();
+      // As a warning: a speed that was asked for and cannot be kept.
+      ASSERT_TRUE(problem.code != ErrorCode::kVelocityLimit ||
+                  problem.severity == Severity::kWarning)
+          << problem.describe();
       ASSERT_NE(problem.code, ErrorCode::kAccelerationLimit) << problem.describe();
       ASSERT_NE(problem.code, ErrorCode::kJerkLimit) << problem.describe();
       ASSERT_FALSE(problem.message.empty());

@@ -1,6 +1,8 @@
 /// @file
 #pragma once
 
+#include <limits>
+
 namespace viapoint {
 
 /// How near a move must pass its point.
@@ -13,6 +15,13 @@ enum class ZoneKind {
 struct Zone {
   ZoneKind kind = ZoneKind::kFine;
   double size = 0.0;
+  /// Bound of the tool's orientation besides [rad]: from that at the point for kRadius, else from
+  /// that of the legs, both ways.
+  double angle = std::numeric_limits<double>::infinity();
+
+  [[nodiscard]] bool bounds_angle() const {
+    return angle < std::numeric_limits<double>::infinity();
+  }
   bool operator==(const Zone&) const = default;
 };
 

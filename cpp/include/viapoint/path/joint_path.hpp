@@ -34,6 +34,9 @@ struct ToolLimits {
   double angular_acceleration = kNone;  ///< of the tool [rad/s²]
   /// `speed` is to be kept wherever the limits allow, not only not to be exceeded.
   bool hold_speed = false;
+  /// Share of the joints' limits that may be used meanwhile: no limit of the tool, but what a speed
+  /// that is not held is judged by.
+  double joint_share = 1.0;
 
   [[nodiscard]] bool any() const { return speed < kNone || acceleration < kNone || turns(); }
   [[nodiscard]] bool turns() const { return angular_speed < kNone || angular_acceleration < kNone; }

@@ -18,10 +18,15 @@ namespace viapoint {
 struct CornerOutcome {
   int move = 0;
   Zone asked;
-  bool stopped = false;  ///< the arm stops at the point
-  double used = 0.0;     ///< size really used, in the zone's own unit
-  double cut = 0.0;      ///< proven largest distance of the tool from its legs [m]
-  std::string reason;    ///< why shrunk or stopped; empty where used as asked
+  bool stopped = false;      ///< the arm stops at the point
+  double used = 0.0;         ///< size really used, in the zone's own unit
+  double used_angle = 0.0;   ///< the same of the zone's angle [rad]; 0 for a zone without
+  bool angle_rules = false;  ///< the angle was used up before the size
+  /// The move whose straight leg the point was merged into: it lies so near that leg, by `used`,
+  /// that it makes no corner.
+  std::optional<int> merged_into;
+  double cut = 0.0;    ///< proven largest distance of the tool from its legs [m]
+  std::string reason;  ///< why shrunk or stopped; empty where used as asked
 };
 
 /// Limits of the tool that hold for a while.

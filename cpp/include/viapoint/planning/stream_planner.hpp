@@ -24,6 +24,9 @@ struct MotionChunk {
   bool last = false;                   ///< the program ends with it
   std::vector<CornerOutcome> corners;  ///< decided since the chunk before
   std::vector<Problem> warnings;       ///< met since the chunk before
+  /// Where a process speed is not held, known since the chunk before: a chunk is looked at when it
+  /// is known when it is left. Times count from the beginning of the first chunk [s, nominal].
+  std::vector<ProcessStretch> process_stretches;
 };
 
 /// Takes the steps of a program one by one and hands out its motion in chunks. What is kept does
