@@ -17,7 +17,18 @@ import json
 import sys
 from pathlib import Path
 
-from benches import core, documents, kinematics, paths, profiles, programs, remote, sampling, tables
+from benches import (
+    core,
+    documents,
+    kinematics,
+    paths,
+    profiles,
+    programs,
+    remote,
+    sampling,
+    soundness,
+    tables,
+)
 from benches.machine import ROOT, machine
 from benches.tables import Row
 
@@ -98,7 +109,7 @@ def record(about: dict[str, str], figures: list[Row], differences: list[Row]) ->
 
 
 def main(arguments: list[str]) -> int:
-    """Measure what was asked for and print it; 1 when a motion of the run by the million failed."""
+    """Measure what was asked for and print it; 1 when a motion failed or breaks a limit."""
     options = parse(arguments)
     subjects = options.subjects or SUBJECTS
     about = machine()
@@ -119,6 +130,9 @@ def main(arguments: list[str]) -> int:
             )
         figures += rows
         differences += others
+    if worst := soundness.worst_shares(figures):
+        print(f"\nworst share\n{lay_out(worst)}", flush=True)
+        figures += worst
     if options.docs:
         for document in documents.write(about, figures):
             print(f"wrote {document.relative_to(ROOT)}")
@@ -127,7 +141,8 @@ def main(arguments: list[str]) -> int:
     for path in results:
         about["date"] = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
         path.write_text(record(about, figures, differences), encoding="utf-8")
-    return int(any(row["case"] == "failures" and row.get("value") for row in figures))
+    failed = any(row["case"] == "failures" and row.get("value") for row in figures)
+    return int(failed or soundness.broken(worst))
 
 
 if __name__ == "__main__":

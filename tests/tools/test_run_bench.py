@@ -49,6 +49,24 @@ def test_the_figures_are_written_with_the_machine_they_are_of(
     assert '"p50_us": 0.51234' in text
 
 
+@pytest.mark.parametrize(("share", "failed"), [("1.000002", 1), ("1.0000001", 0)])
+def test_a_motion_beyond_a_limit_fails_the_run_and_is_shown(
+    share: str,
+    failed: int,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+):
+    program = tmp_path / "viapoint-bench"
+    line = f'{{"bench": "walk", "case": "long", "worst_share": {share}}}'
+    program.write_text(f"#!/bin/sh\necho '{line}'\n", encoding="utf-8")
+    program.chmod(0o755)
+    monkeypatch.setattr(run_bench, "machine", dict)
+    assert run_bench.main(["walk", "--program", str(program)]) == failed
+    above = capsys.readouterr().out.splitlines()[-1].split()[-1]
+    assert float(above) == pytest.approx(float(share) - 1.0, rel=1e-3)
+
+
 def test_an_unknown_subject_is_refused(capsys: pytest.CaptureFixture[str]):
     with pytest.raises(SystemExit):
         run_bench.main(["speed"])

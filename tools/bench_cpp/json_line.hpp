@@ -14,6 +14,7 @@ namespace viapoint::bench {
 class JsonLine {
  public:
   JsonLine(std::string_view bench, std::string_view subject) {
+    text_.precision(kDigits);
     text_ << "{\"bench\": \"" << bench << "\", \"case\": \"" << subject << '"';
   }
   ~JsonLine() { std::cout << text_.str() << "}" << std::endl; }
@@ -27,6 +28,8 @@ class JsonLine {
   }
 
  private:
+  /// Enough to tell a limit that is kept from one that is not.
+  static constexpr int kDigits = 9;
   std::ostringstream text_;
 };
 

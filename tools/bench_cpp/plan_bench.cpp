@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 
@@ -6,6 +7,7 @@
 #include "json_line.hpp"
 #include "sample_programs.hpp"
 #include "viapoint/planning/motion_planner.hpp"
+#include "worst_share.hpp"
 
 namespace viapoint::bench {
 namespace {
@@ -19,7 +21,7 @@ void run(const char* subject, const RobotPtr& robot, int programs, const MakePro
   Durations durations;
   int impossible = 0;
   std::size_t pieces = 0;
-  double motion_time = 0.0;
+  double motion_time = 0.0, share = 0.0;
   for (int seed = 0; seed < programs; ++seed) {
     const MotionProgram program = make(*robot, kMoves, static_cast<std::uint64_t>(seed));
     PlannedMotion planned;
@@ -34,6 +36,7 @@ void run(const char* subject, const RobotPtr& robot, int programs, const MakePro
     durations.add(seconds / kMoves);
     pieces += planned.trajectory.pieces().size();
     motion_time += planned.trajectory.duration();
+    share = std::max(share, worst_share(planned.trajectory.certificate()));
   }
   const auto planned = static_cast<double>(durations.count());
   JsonLine("plan", subject)
@@ -44,7 +47,8 @@ void run(const char* subject, const RobotPtr& robot, int programs, const MakePro
       .add("p99_ms_per_move", 1e3 * durations.quantile(0.99))
       .add("max_ms_per_move", 1e3 * durations.quantile(1.0))
       .add("pieces_per_move", planned > 0 ? static_cast<double>(pieces) / planned / kMoves : 0.0)
-      .add("motion_s_per_move", planned > 0 ? motion_time / planned / kMoves : 0.0);
+      .add("motion_s_per_move", planned > 0 ? motion_time / planned / kMoves : 0.0)
+      .add("worst_share", share);
 }
 
 }  // namespace

@@ -8,18 +8,10 @@
 #include "json_line.hpp"
 #include "sample_programs.hpp"
 #include "viapoint/planning/motion_planner.hpp"
+#include "worst_share.hpp"
 
 namespace viapoint::bench {
 namespace {
-
-double worst_share(const Certificate& certificate) {
-  double worst = 0.0;
-  for (const auto* extrema :
-       {&certificate.velocity, &certificate.acceleration, &certificate.jerk}) {
-    for (const Extremum& extremum : *extrema) worst = std::max(worst, extremum.share);
-  }
-  return worst;
-}
 
 void run(double deviation, int points, int paths) {
   const RobotPtr robot = walking_robot();

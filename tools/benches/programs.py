@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from benches.soundness import MOST_SHARE
 from benches.tables import Row
 
 if TYPE_CHECKING:
@@ -27,8 +28,6 @@ FEWEST, MOST = 2, 200
 """Moves of a program."""
 VERIFIED = 50
 """One motion in so many is proven again from its file, by the verifier."""
-SHARE = 1.0 + 1e-6
-"""Of a limit, that no motion may exceed."""
 
 
 def measure(problems: int, *, quick: bool) -> list[Row]:
@@ -103,7 +102,7 @@ class Tally:
         )
         self.share = max(self.share, share)
         self.deviation = max(self.deviation, certificate.path_deviation)
-        if not certificate.holds or share > SHARE:
+        if not certificate.holds or share > MOST_SHARE:
             return f"the certificate does not hold: {share:.9g} of a limit"
         return self.prove_again(motion) if verify else ""
 
