@@ -35,6 +35,7 @@ from ._job import Job, RunReport
 from ._knots import insert_knots
 from ._log_files import load_log
 from ._motion import Motion
+from ._plant import MujocoPlant
 from ._playback import Playback
 from ._playback_file import load_recording
 from ._points import PointList
@@ -64,6 +65,7 @@ __all__ = [
     "Knots",
     "Motion",
     "MotionError",
+    "MujocoPlant",
     "Playback",
     "PointList",
     "Problem",
