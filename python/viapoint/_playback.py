@@ -31,12 +31,12 @@ _SAME_PLACE = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Stage:
-    """One way without a stop, or a rest where there are no control points.
+    """One way without a stop, or a rest, which has one control point.
 
     Attributes
     ----------
     control : ndarray, (m, n)
-        Control points of a clamped uniform cubic B-spline of the joints [rad or m]; (0, n): none.
+        Control points of a clamped uniform cubic B-spline of the joints [rad or m]; one: a rest.
     outputs : int
         Digital outputs meanwhile, bit i is output i.
     before, moving, after : float
@@ -54,14 +54,16 @@ class Stage:
     angle: float
 
     @classmethod
-    def rest(cls, seconds: float, outputs: int, joints: int) -> Stage:
-        """Stay where the arm is."""
-        return cls(np.empty((0, joints)), outputs, seconds, 0.0, 0.0, 0.0, 0.0)
+    def rest(
+        cls, seconds: float, outputs: int, place: Vector, position: float, angle: float
+    ) -> Stage:
+        """Stay at a place, (n,) [rad or m]."""
+        return cls(place[None], outputs, seconds, 0.0, 0.0, position, angle)
 
     @property
     def moves(self) -> bool:
         """False for a rest."""
-        return len(self.control) > 0
+        return len(self.control) > 1
 
     def reversed(self) -> Stage:
         """Return the same way from its end to its beginning."""

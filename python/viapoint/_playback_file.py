@@ -117,12 +117,11 @@ def _playback_in(document: dict[str, Any], robot: Robot | None) -> tuple[Playbac
         _stage(row, f"stages[{i}]", arm.joints)
         for i, row in enumerate(items(document["stages"], "stages"))
     )
-    ways = [stage for stage in stages if stage.moves]
-    if not ways:
+    if not any(stage.moves for stage in stages):
         refuse("stages", "none of them moves the arm")
-    for before, after in pairwise(ways):
+    for before, after in pairwise(stages):
         if not np.array_equal(before.control[-1], after.control[0]):
-            refuse("stages", "a way does not begin where the one before it ends")
+            refuse("stages", "one does not begin where the one before it ends")
     told = {key: optional_number(document[key], key, 1e-12) for key in _TOLERANCES}
     playback = Playback(
         arm, stages, told["tolerance"], told["angle_tolerance"], told["joint_tolerance"]
@@ -133,8 +132,8 @@ def _playback_in(document: dict[str, Any], robot: Robot | None) -> tuple[Playbac
 def _stage(value: object, place: str, joints: int) -> Stage:
     given = members(value, place, " ".join(("outputs", *_SECONDS, *_DEVIATIONS, "control")))
     control = array(given["control"], f"{place}.control", (-1, joints)).reshape(-1, joints)
-    if 0 < len(control) < 4:
-        refuse(f"{place}.control", "a way has four control points or more")
+    if len(control) != 1 and len(control) < 4:
+        refuse(f"{place}.control", "a rest has one control point, a way four or more")
     numbers = {key: number(given[key], f"{place}.{key}", 0.0) for key in (*_SECONDS, *_DEVIATIONS)}
     return Stage(
         control=control, outputs=integer(given["outputs"], f"{place}.outputs", 0, 2**64), **numbers

@@ -17,7 +17,7 @@ from ._playback import Playback, Stage
 from ._robot import Robot, require_robot, require_within_limits
 from ._rotation_vectors import rotation_vectors
 from ._run_log import RunLog
-from ._smoothing import SmoothCurve, reversals, smooth, thinned
+from ._smoothing import SmoothCurve, reversals, smooth
 from ._zone import Zone
 from .errors import BadArgumentError, DegenerateCurveError, EmptyProgramError
 
@@ -158,10 +158,10 @@ class Recording:
             # The first sample with other outputs still belongs to the way before.
             made = self._stages(measure, slice(begin, min(stop + 1, len(self))), end)
             stages += made
-            end = made[-1].control[-1] if made[-1].moves else end
+            end = made[-1].control[-1]
         if not any(stage.moves for stage in stages):
             raise EmptyProgramError(
-                f"The arm was moved by less than {4.0:g} times the tolerance.",
+                "The arm was moved by less than the tolerance.",
                 ways_out=["Record a motion.", "Give a smaller tolerance."],
             )
         return Playback(self.robot, tuple(stages), measure.position, measure.angle, measure.joints)
@@ -183,9 +183,12 @@ class Recording:
         stages: list[Stage] = []
         for begin, end in pairwise(turns):
             whole = slice(begin, end + 1)
-            chosen = thinned(seen[whole])
-            if len(chosen) < 2:  # nothing but noise about the place before
-                stages.append(Stage.rest(float(t[end] - t[begin]), outputs, q.shape[1]))
+            place = q[whole].mean(axis=0) if first is None else first
+            still = np.tile(place, (end + 1 - begin, 1))
+            if measure.shares(still, q[whole]).max() <= 1.0:  # nothing but noise about a place
+                first = place
+                deviation = measure.deviations(still, q[whole])
+                stages.append(Stage.rest(float(t[end] - t[begin]), outputs, place, *deviation))
                 continue
             curve = smooth(q[whole], measure.features, measure.shares, first)
             self._require_near(curve, t[whole])

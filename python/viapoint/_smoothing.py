@@ -127,6 +127,8 @@ def thinned(seen: Vector) -> npt.NDArray[np.intp]:
             chosen.append(i)
     if len(chosen) > 1:
         chosen[-1] = len(seen) - 1
+    else:  # a way shorter than that is one chord
+        chosen.append(len(seen) - 1)
     return np.array(chosen, dtype=np.intp)
 
 
@@ -147,8 +149,6 @@ def reversals(seen: Vector) -> list[int]:
 
 def _places(seen: Vector, chosen: npt.NDArray[np.intp]) -> Vector:
     """How far along the polygon of chosen samples each sample is, 0 to 1."""
-    if len(chosen) < 2:
-        return np.linspace(0.0, 1.0, len(seen))
     chords = np.diff(seen[chosen], axis=0)
     lengths = np.linalg.norm(chords, axis=1)
     starts = np.concatenate([[0.0], np.cumsum(lengths)])
@@ -157,7 +157,7 @@ def _places(seen: Vector, chosen: npt.NDArray[np.intp]) -> Vector:
     )
     along = np.sum((seen - seen[chosen[chord]]) * chords[chord], axis=1)
     along = np.clip(along / np.maximum(lengths[chord], 1e-300), 0.0, lengths[chord])
-    places: Vector = (starts[chord] + along) / starts[-1]
+    places: Vector = (starts[chord] + along) / max(starts[-1], 1e-300)
     return places
 
 

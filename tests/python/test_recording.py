@@ -119,6 +119,18 @@ def test_a_way_that_goes_back_on_itself_is_cut_and_kept(ur5e):
     assert distance_to_path(ur5e, q[::7], motion.sample(1e-3).q).max() <= fit.deviation + 1e-6
 
 
+def test_a_small_move_after_a_large_one_is_kept_within_the_tolerance(ur5e):
+    """By less than what tells a move from noise, and by more than the tolerance."""
+    t = np.arange(0.0, 2.0, CYCLE)
+    q = HOME + np.outer(eased(t, 0.1, 0.9), np.full(6, 0.2))
+    q += np.outer(eased(t, 1.3, 1.6), np.full(6, 0.004))
+    outputs = np.where(t > 1.1, 1, 0)
+    fit = vp.Recording.of_samples(ur5e, t, q, outputs).fit(2e-3)
+    motion = fit.program(speed=None).plan()
+    assert distance_to_path(ur5e, q[::7], motion.sample(1e-3).q).max() <= fit.deviation + 1e-6
+    assert np.abs(motion.end - q[-1]).max() < 1e-3
+
+
 def test_outputs_are_played_where_and_when_they_changed(ur5e):
     t, q, s = there_and_back()
     outputs = np.where(t > 1.0, 0b1001, 0b1000)
@@ -264,7 +276,7 @@ def test_another_robot_warns_and_one_of_another_name_is_refused(saved):
         (lambda d: d.update(extra=1), "unknown key"),
         (lambda d: d["stages"].clear(), "none of them moves"),
         (lambda d: d["stages"][0]["control"].pop(0), None),
-        (lambda d: d["stages"][0].update(control=d["stages"][0]["control"][:3]), "four control"),
+        (lambda d: d["stages"][0].update(control=d["stages"][0]["control"][:3]), "four or more"),
         (lambda d: d["stages"][0].update(before=-1), "not within"),
         (lambda d: d["stages"][0].update(outputs=2**64), "not within"),
         (lambda d: d["stages"][0]["control"][0].pop(), "must hold 6"),
