@@ -86,21 +86,22 @@ class Served:
         return self.process.wait(timeout=60)
 
 
-def controller_executable() -> str:
+@pytest.fixture(scope="session")
+def controller() -> str:
+    """The viapoint-controller that was built with the package."""
     beside = Path(sys.executable).parent / "viapoint-controller"
     found = str(beside) if beside.exists() else shutil.which("viapoint-controller")
     if found is None:
-        pytest.skip("viapoint-controller is not installed: nothing of it was tested")
+        pytest.skip("viapoint-controller is not installed: it was NOT tested")
     return found
 
 
 @pytest.fixture
-def serve(tmp_path: Path) -> Iterator[Callable[..., Served]]:
+def serve(controller: str, tmp_path: Path) -> Iterator[Callable[..., Served]]:
     """Start controllers with the configuration given, on a port that the system chooses.
 
     The heartbeat is long unless told otherwise, so that a loaded machine loses no beat.
     """
-    executable = controller_executable()
     processes: list[subprocess.Popen[str]] = []
 
     def start(**keys: object) -> Served:
@@ -108,7 +109,7 @@ def serve(tmp_path: Path) -> Iterator[Callable[..., Served]]:
         told = {"robot": "puma560", "listen": "127.0.0.1:0", "heartbeat": 20.0} | keys
         config.write_text(json.dumps(told), encoding="utf-8")  # which is YAML, too
         process = subprocess.Popen(
-            [executable, "--config", str(config)], stderr=subprocess.PIPE, text=True
+            [controller, "--config", str(config)], stderr=subprocess.PIPE, text=True
         )
         processes.append(process)
         assert process.stderr is not None

@@ -1,24 +1,12 @@
 """An exported program in viapoint-controller, with no Python, gives the same setpoints."""
 
-import shutil
 import subprocess
-import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 import viapoint as vp
 from viapoint import mm
-
-
-@pytest.fixture(scope="module")
-def controller() -> str:
-    beside = Path(sys.executable).parent / "viapoint-controller"
-    found = str(beside) if beside.exists() else shutil.which("viapoint-controller")
-    if found is None:
-        pytest.skip("viapoint-controller is not installed: bit-identity was NOT tested")
-    return found
 
 
 def program_of(kind, puma, abc):

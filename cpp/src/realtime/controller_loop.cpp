@@ -1,6 +1,8 @@
 #include "viapoint/realtime/controller_loop.hpp"
 
+#include <algorithm>
 #include <array>
+#include <limits>
 #include <mutex>
 #include <sstream>
 #include <string>
@@ -268,6 +270,17 @@ bool ControllerLoop::jogging() const { return impl_->jogs(); }
 
 std::string ControllerLoop::jog_block() const {
   return text_of(impl_->channels.jog_block.load(std::memory_order_relaxed));
+}
+
+void ControllerLoop::keep_alive(std::chrono::nanoseconds lease) {
+  const auto whole = std::chrono::duration_cast<std::chrono::microseconds>(lease).count();
+  const auto least = std::int64_t{0};
+  const auto most = std::int64_t{std::numeric_limits<std::uint32_t>::max()};
+  const auto microseconds = static_cast<std::uint32_t>(std::clamp(whole, least, most));
+  Lease present = impl_->channels.lease;
+  while (
+      !impl_->channels.lease.compare_exchange_weak(present, {present.number + 1, microseconds})) {
+  }
 }
 
 void ControllerLoop::set_override(double share) {

@@ -50,6 +50,7 @@ void CycleRunner::do_cycle() noexcept VIAPOINT_NONBLOCKING {
   const bool is_jog = channels_.jog.read(wished_);
   if (motion_ != nullptr) take_wish();
   if (is_jog) jog();
+  hold_lease();
   interpolator_.set_override(channels_.override_share.load(std::memory_order_relaxed));
 
   const std::int64_t begin = clock_.now();
@@ -105,6 +106,17 @@ void CycleRunner::jog() noexcept VIAPOINT_NONBLOCKING {
   // In this order: who sees the wish done sees the jog that it began.
   channels_.jogging.store(interpolator_.jogging(), std::memory_order_release);
   channels_.jog.done();
+}
+
+void CycleRunner::hold_lease() noexcept VIAPOINT_NONBLOCKING {
+  const Lease lease = channels_.lease.load(std::memory_order_acquire);
+  if (lease.number != lease_) {
+    lease_ = lease.number;
+    alive_until_ = woke_ + std::int64_t{lease.microseconds} * 1000;
+  }
+  if (woke_ < alive_until_) return;
+  if (interpolator_.active()) interpolator_.wish(Wish::kPause);
+  if (interpolator_.jogging()) interpolator_.stop_jog();
 }
 
 void CycleRunner::take_wish() noexcept VIAPOINT_NONBLOCKING {

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <boost/lockfree/spsc_queue.hpp>
 #include <cstdint>
+#include <limits>
 
 #include "realtime/cycle_history.hpp"
 #include "realtime/jog_channel.hpp"
@@ -18,6 +19,14 @@
 
 namespace viapoint {
 
+/// How long the arm may move from the cycle that sees it, and which lease it is: 0 before the
+/// first.
+struct Lease {
+  std::uint32_t number = 0;
+  std::uint32_t microseconds = 0;
+};
+static_assert(std::atomic<Lease>::is_always_lock_free);
+
 /// What the loop's threads share. Each member says who writes it.
 struct LoopChannels {
   explicit LoopChannels(int joints) : snapshot(joints) {}
@@ -30,6 +39,7 @@ struct LoopChannels {
   std::atomic<bool> jogging{false};         ///< tick
   std::atomic<JogBlock> jog_block{};        ///< tick
   std::atomic<double> override_share{1.0};  ///< ordinary threads
+  std::atomic<Lease> lease{};               ///< ordinary threads
   std::atomic<bool> quit{false};            ///< ordinary threads
   std::atomic<bool> faulted{false};         ///< tick
   // Written by the tick before `faulted`, and never after it.
@@ -56,6 +66,8 @@ class CycleRunner {
   /// Acts on a wish to jog, and says what came of it.
   void jog() noexcept VIAPOINT_NONBLOCKING;
   void take_wish() noexcept VIAPOINT_NONBLOCKING;
+  /// Brings to rest what moves on behalf of somebody who is not heard of any more.
+  void hold_lease() noexcept VIAPOINT_NONBLOCKING;
   void begin_next() noexcept VIAPOINT_NONBLOCKING;
   /// Gives back a motion that was queued while the drive failed or was released.
   void refuse_next() noexcept VIAPOINT_NONBLOCKING;
@@ -76,6 +88,8 @@ class CycleRunner {
   std::int64_t due_ = 0, woke_ = 0;
   std::int64_t late_cycles_ = 0;  ///< whole cycles that the last wake-up came late
   QueuedMotion* motion_ = nullptr;
+  std::uint32_t lease_ = 0;  ///< number of the last lease seen
+  std::int64_t alive_until_ = std::numeric_limits<std::int64_t>::max();
   NumberedWish wish_;  ///< of the motion, as far as it has been acted on
   /// The last setpoint is out. The run ends with the exchange after it, which measures where that
   /// setpoint has brought the arm.

@@ -17,9 +17,15 @@ namespace {
 
 using std::chrono::steady_clock;
 
-/// The seat is lost a little before the heartbeat is over, so that the stop has begun within it.
-constexpr double kShareOfHeartbeat = 0.9;
+// An operator may be silent for these shares of the heartbeat, so that the stop has begun within
+// it. The seat is lost first and sees to everything; the loop holds the arm by itself even if no
+// thread of ordinary priority gets to run.
+constexpr double kSeatShare = 0.9, kLoopShare = 0.95;
 constexpr double kSlice = 0.05;  ///< of a wait for a run's end [s]
+
+std::chrono::nanoseconds share_of(double share, std::chrono::nanoseconds heartbeat) {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(share * heartbeat);
+}
 
 struct Run {
   std::uint64_t number = 0;
@@ -51,8 +57,9 @@ struct ArmHost::Impl {
   Impl(const JointLimits& joint_limits, MakeLoop maker, std::chrono::nanoseconds heartbeat)
       : limits(joint_limits),
         make_loop(std::move(maker)),
+        lease(share_of(kLoopShare, heartbeat)),
         loop(make_loop({})),
-        seat(std::chrono::duration_cast<std::chrono::nanoseconds>(kShareOfHeartbeat * heartbeat)),
+        seat(share_of(kSeatShare, heartbeat)),
         watchdog([this] { watch(); }) {}
 
   ~Impl() {
@@ -85,6 +92,7 @@ struct ArmHost::Impl {
     pending.clear();
     if (!runs.empty()) runs.back().job->pause();
     const std::shared_ptr<ControllerLoop> present = loop;
+    if (present != nullptr) present->keep_alive(std::chrono::nanoseconds::zero());
     lock.unlock();
     if (present != nullptr) end_jog(*present);
     lock.lock();
@@ -136,6 +144,7 @@ struct ArmHost::Impl {
 
   const JointLimits limits;
   const MakeLoop make_loop;
+  const std::chrono::nanoseconds lease;
 
   mutable std::mutex mutex;  ///< guards what follows; never held while a motion is proven
   std::condition_variable changed;
@@ -161,13 +170,19 @@ std::string ArmHost::take_control(const std::string& name) {
   if (impl_->quits) throw NotInControl("the controller is shutting down");
   if (!impl_->seat.taken()) impl_->renew_loop();
   std::string token = impl_->seat.take(name, steady_clock::now());
+  impl_->loop->keep_alive(impl_->lease);
   impl_->changed.notify_all();
   return token;
 }
 
 void ArmHost::beat(const std::string& token) {
-  const std::lock_guard lock(impl_->mutex);
-  impl_->seat.beat(token, steady_clock::now());
+  std::unique_lock lock(impl_->mutex);
+  impl_->seat.require(token);
+  // In this order: whoever keeps the seat has told the loop before its lease was over.
+  const steady_clock::time_point heard = steady_clock::now();
+  impl_->loop->keep_alive(impl_->lease);
+  if (impl_->seat.expire(steady_clock::now())) impl_->abandon(lock);
+  impl_->seat.beat(token, heard);
 }
 
 void ArmHost::give_up_control(const std::string& token) {

@@ -112,6 +112,11 @@ class ControllerLoop {
   /// What keeps the jog, or kept the last one, from doing what was wished; empty where nothing
   /// does.
   [[nodiscard]] std::string jog_block() const;
+  /// From the first call on the arm moves only for as long as this is called again within `lease`
+  /// [of the loop's clock, at most an hour]: after that the loop itself pauses what runs, and what
+  /// begins or is resumed, and ends a jog. Zero: at once. For who moves the arm on somebody's
+  /// behalf. The time counts from the next cycle. Threads: any.
+  void keep_alive(std::chrono::nanoseconds lease);
   /// Share of the planned speed in [0, 1]; applies to this run and the next ones.
   void set_override(double share);
   [[nodiscard]] double override_share() const;

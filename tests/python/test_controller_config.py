@@ -1,0 +1,87 @@
+"""A configuration that is wrong anywhere is refused by name, before anything is enabled."""
+
+import json
+import subprocess
+from pathlib import Path
+
+import pytest
+
+WRONG = {
+    "speed: 3": 'unknown key "speed"',
+    "robot: ur5e": '"robot" is there twice',
+    "listen: 0.0.0.0:7420": "other machines could reach the arm",
+    "listen: '[::]:7420'": "other machines could reach the arm",
+    "listen: 10.0.0.1:7420": "other machines could reach the arm",
+    "listen: localhost:7420": "no address and port in numbers",
+    "listen: 127.0.0.1": "no address and port in numbers",
+    "listen: 127.0.0.1:99999": "no address and port in numbers",
+    "listen: 127.0.0.1:-1": "no address and port in numbers",
+    "cycle: 0": "cycle: is 0; allowed are 1e-04 to 1 s",
+    "cycle: fast": "cycle: expected a number",
+    "heartbeat: .nan": "heartbeat: expected a number",
+    "heartbeat: 0.001": "heartbeat: is 0.001; allowed are 0.02 to 60 s",
+    "tool_speed: -1": "tool_speed: is -1",
+    "drive: ethercat": '"ethercat" is no drive',
+    "start: [0, 0]": 'start has 2 values, "puma560" has 6 joints',
+    "start: [0, 0, 0, 0, 0, .inf]": "not finite",
+    "start: []": "start: has 0 values",
+    "workspace: {min: [0, 0, 0]}": '"max" is missing',
+    "workspace: {min: [0, 0, 0], max: [1, 1, 0]}": "max must be beyond min",
+    "tls: {authority: a.pem, certificate: b.pem}": '"key" is missing',
+    "tls: {authority: a.pem, certificate: b.pem, key: c.key}": "cannot be read",
+    "logs: /nowhere/at/all": "the log cannot be written there",
+    "cycle: [": "is no YAML",
+    "---": "holds 2 documents",
+}
+
+
+def refusal(controller, tmp_path, text):
+    config = tmp_path / "controller.yaml"
+    config.write_text(text, encoding="utf-8")
+    done = subprocess.run(
+        [controller, "--config", str(config)],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    return done.returncode, done.stderr
+
+
+@pytest.mark.parametrize("line", WRONG, ids=str)
+def test_what_is_wrong_is_named(controller, tmp_path, line):
+    code, said = refusal(controller, tmp_path, f"robot: puma560\n{line}\n")
+    assert code == 3
+    assert WRONG[line] in said
+
+
+def test_a_file_that_is_none_is_named(controller, tmp_path):
+    assert refusal(controller, tmp_path, "")[0] == 3
+    assert 'key "robot" is missing' in refusal(controller, tmp_path, "cycle: 0.002")[1]
+    assert refusal(controller, tmp_path, "x" * (2 << 20))[0] == 3
+    missing = subprocess.run(
+        [controller, "--config", str(tmp_path / "none.yaml")],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert missing.returncode == 3
+    assert "none.yaml" in missing.stderr
+
+
+def test_the_configuration_that_is_installed_is_one(serve):
+    example = Path(__file__).parents[2] / "cpp/controller/viapoint-controller.yaml"
+    lines = example.read_text(encoding="utf-8").splitlines()
+    keys = [line for line in lines if line[:1] not in "# "]
+    told = dict(line.partition("#")[0].strip().split(": ", 1) for line in keys)
+    assert {"robot", "drive", "start", "listen", "cycle", "heartbeat"} == set(told)
+    start = json.loads(told["start"])
+    served = serve(
+        robot=told["robot"],
+        drive=told["drive"],
+        start=start,
+        cycle=float(told["cycle"]),
+        heartbeat=float(told["heartbeat"]),
+    )
+    assert served.end() == 0
