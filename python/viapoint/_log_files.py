@@ -105,7 +105,7 @@ def load_log(path: str | os.PathLike[str], robot: Robot | None = None) -> RunLog
         else:
             header, columns = _read_npz(name)
         core = _core.Log.of_columns(columns)
-        arm = _robot_in(header) if robot is None else robot
+        arm = robot_in(header["robot"]) if robot is None else robot
         period = float(header["period"])
         tools = tuple(
             (int(step), arm.with_tool(np.array(tool))) for step, tool in header.get("tools", [])
@@ -146,10 +146,11 @@ def _ending_of(name: str) -> str:
     )
 
 
-def _robot_in(header: dict[str, Any]) -> Robot:
+def robot_in(text: str) -> Robot:
+    """Make the robot that a file describes in the words of a robot's own file."""
     with tempfile.TemporaryDirectory() as folder:
         description = Path(folder) / "robot.yaml"
-        description.write_text(header["robot"], encoding="utf-8")
+        description.write_text(text, encoding="utf-8")
         return load_robot(description)
 
 

@@ -2,24 +2,34 @@
 
 from __future__ import annotations
 
+import io
+import os
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
-from . import _session
-from ._arguments import ArrayLike, Vector, number, numbers_of
+from . import _core, _session
+from ._arguments import ArrayLike, Vector, file_name, number, numbers_of
+from ._log_files import robot_in
+from ._measure import Measure
 from ._playback import Playback, Stage
 from ._robot import Robot, require_robot, require_within_limits
-from ._rotation_vectors import rotation_vectors
 from ._run_log import RunLog
 from ._smoothing import SmoothCurve, reversals, smooth
 from ._zone import Zone
-from .errors import BadArgumentError, DegenerateCurveError, EmptyProgramError
+from .errors import (
+    BadArgumentError,
+    BadProgramError,
+    DegenerateCurveError,
+    EmptyProgramError,
+    FileError,
+)
 
 if TYPE_CHECKING:
     from ._arm import Arm
@@ -102,6 +112,45 @@ class Recording:
             raise BadArgumentError("The log holds nothing that a drive measured.")
         return cls.of_samples(log.robot, log.samples.t[seen], log.measured[seen], log.outputs[seen])
 
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Recording:
+        """Read the samples that `save` wrote, to the last bit.
+
+        Raises
+        ------
+        FileError
+            There is no such file.
+        BadProgramError
+            It is damaged, or no recording.
+        """
+        name = file_name(path)
+        if not Path(name).is_file():
+            raise FileError(f"There is no recording {name}.", file=name)
+        try:
+            with Path(name).open("rb") as stream, np.load(stream, allow_pickle=False) as file:
+                arm = robot_in(str(file["robot"]))
+                return cls.of_samples(arm, file["t"], file["q"], file["outputs"])
+        except Exception as error:  # damage shows in many ways, those of decompressors too
+            raise BadProgramError(f"The recording cannot be read: {error!r}.", file=name) from error
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the samples as they are, and their robot, into a numpy file (.npz), aside.
+
+        Raises
+        ------
+        BadArgumentError
+            Another ending.
+        FileError
+            With the path and the system's reason.
+        """
+        name = file_name(path)
+        if not name.endswith(".npz"):
+            raise BadArgumentError(f'path is "{name}"; samples of a recording go into .npz.')
+        buffer = io.BytesIO()
+        robot = np.array(self.robot._core.to_yaml())
+        np.savez_compressed(buffer, robot=robot, t=self.t, q=self.q, outputs=self.outputs)
+        _core.write_file_atomically(name, buffer.getvalue())
+
     def __len__(self) -> int:
         """Count the samples."""
         return len(self.t)
@@ -148,7 +197,7 @@ class Recording:
         BadArgumentError
             By the argument's name.
         """
-        measure = _Measure.of(self.robot, tolerance, angle_tolerance)
+        measure = Measure.of(self.robot, tolerance, angle_tolerance)
         for k in self._outermost():
             require_within_limits(self.robot, self.q[k], f"the recording at {self.t[k]:.3f} s", [])
         edges = [0, *(np.flatnonzero(np.diff(self.outputs)) + 1).tolist(), len(self)]
@@ -172,7 +221,7 @@ class Recording:
         values = np.hstack(rows)
         return sorted({*values.argmin(axis=0).tolist(), *values.argmax(axis=0).tolist()})
 
-    def _stages(self, measure: _Measure, part: slice, first: Vector | None) -> list[Stage]:
+    def _stages(self, measure: Measure, part: slice, first: Vector | None) -> list[Stage]:
         """Fit what lies between two changes of outputs: one stage a way without a reversal."""
         q, t = self.q[part], self.t[part]
         outputs = int(self.outputs[part.start])
@@ -256,71 +305,3 @@ def _moves_between(seen: Vector) -> tuple[int, int]:
     leaves = int(np.argmax(away_from_begin))
     arrives = len(seen) - 1 - int(np.argmax(away_from_end[::-1]))
     return leaves, max(arrives, leaves + 1)
-
-
-@dataclass(frozen=True)
-class _Measure:
-    """What distance is: of the tool, or over all joints.
-
-    Attributes
-    ----------
-    position, angle : float or None
-        Tolerances at the tool [m], [rad].
-    joints : float or None
-        Instead: over all joints [rad or m].
-    """
-
-    robot: Robot
-    position: float | None
-    angle: float | None
-    joints: float | None
-
-    @classmethod
-    def of(cls, robot: Robot, tolerance: float | Zone, angle: float) -> _Measure:
-        if isinstance(tolerance, Zone):
-            if tolerance.kind != "joint_deviation":
-                raise BadArgumentError(
-                    f"tolerance is {tolerance!r}; it must be a distance [m] or "
-                    "vp.joint_deviation(…)."
-                )
-            return cls(robot, None, None, number(tolerance.size, "tolerance", "rad", above=0.0))
-        if not robot.has_kinematics:
-            raise BadArgumentError(
-                f'The robot "{robot.name}" has no kinematics: its tool has no place.',
-                ways_out=["Give the tolerance in joints: fit(vp.joint_deviation(0.01))."],
-            )
-        return cls(
-            robot,
-            number(tolerance, "tolerance", "m", above=0.0),
-            number(angle, "angle_tolerance", "rad", above=0.0),
-            None,
-        )
-
-    def features(self, q: Vector) -> Vector:
-        if self.position is None or self.angle is None:
-            return q / (self.joints or 1.0)
-        scale = np.where(self.robot.prismatic, self.position, self.angle)
-        places = self.robot.fk(q)[:, :3, 3] / self.position
-        return np.hstack([places, q / scale])
-
-    def shares(self, path: Vector, samples: Vector) -> Vector:
-        if self.position is None or self.angle is None:
-            apart: Vector = np.linalg.norm(path - samples, axis=1) / (self.joints or 1.0)
-            return apart
-        off, turned = self._apart(path, samples)
-        larger: Vector = np.maximum(off / self.position, turned / self.angle)
-        return larger
-
-    def deviations(self, path: Vector, samples: Vector) -> tuple[float, float]:
-        """Largest distance [m] (over joints: [rad or m]) and angle [rad]."""
-        if self.position is None:
-            return float(np.linalg.norm(path - samples, axis=1).max()), 0.0
-        off, turned = self._apart(path, samples)
-        return float(off.max()), float(turned.max())
-
-    def _apart(self, path: Vector, samples: Vector) -> tuple[Vector, Vector]:
-        here, there = self.robot.fk(path), self.robot.fk(samples)
-        off: Vector = np.linalg.norm(here[:, :3, 3] - there[:, :3, 3], axis=1)
-        turn = rotation_vectors(here[:, :3, :3] @ np.swapaxes(there[:, :3, :3], 1, 2))
-        turned: Vector = np.linalg.norm(turn, axis=1)
-        return off, turned

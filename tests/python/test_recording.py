@@ -180,6 +180,27 @@ def test_an_arm_is_recorded_while_it_is_jogged(ur5e):
     assert fit.deviation <= 1e-3
 
 
+def test_raw_samples_are_kept_to_the_last_bit(tmp_path):
+    robot = vp.joint_robot(2, velocity=2, acceleration=20, jerk=200)
+    t = np.arange(0.0, 1.0, CYCLE)
+    q = np.random.default_rng(2).normal(size=(len(t), 2))
+    recording = vp.Recording.of_samples(robot, t, q, np.where(t > 0.5, 2**63, 1).astype(np.uint64))
+    path = tmp_path / "raw.npz"
+    recording.save(path)
+    read = vp.Recording.load(path)
+    for name in ("t", "q", "outputs"):
+        np.testing.assert_array_equal(getattr(read, name), getattr(recording, name))
+    assert read.robot.fingerprint == robot.fingerprint
+    data = path.read_bytes()
+    path.write_bytes(data[: len(data) // 2])
+    with pytest.raises(errors.BadProgramError, match="cannot be read"):
+        vp.Recording.load(path)
+    with pytest.raises(errors.FileError, match="no recording"):
+        vp.Recording.load(tmp_path / "none.npz")
+    with pytest.raises(errors.BadArgumentError, match=r"\.npz"):
+        recording.save(tmp_path / "raw.json")
+
+
 def test_robots_without_kinematics_are_fitted_in_joints():
     robot = vp.joint_robot(2, velocity=2, acceleration=20, jerk=200)
     t = np.arange(0.0, 1.0, CYCLE)
