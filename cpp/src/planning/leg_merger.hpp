@@ -13,8 +13,8 @@
 namespace viapoint::planning {
 
 /// Takes legs one by one and gives them on, the last ones a little later: a run of straight legs of
-/// the same kind and the same wishes becomes one leg while each point between them lies within a
-/// quarter of its zone of that leg; the corners at its ends have only the rest of theirs. So every
+/// the same kind and the same wishes becomes one leg while each point between them lies within
+/// half its zone of that leg; the corners at its ends have only the rest of theirs. So every
 /// place of the path keeps the zone's promise of the legs as they were told:
 ///  - the distance between the run and its leg, both ways, is the largest of a point, since the
 ///    distance from a segment is convex and the points go forward along it,

@@ -102,7 +102,7 @@ TEST(MergedLegs, OfASampledArcStayWithinTheDeviationOfThePolylineBothWays) {
     EXPECT_LE(corner.used, kDeviation);
     if (!corner.merged_into) continue;
     EXPECT_GT(*corner.merged_into, corner.move);
-    EXPECT_LE(corner.used, 0.25 * kDeviation);
+    EXPECT_LE(corner.used, 0.5 * kDeviation);
     EXPECT_EQ(corner.cut, corner.used);
   }
   EXPECT_LE(motion.trajectory.certificate().zone_deviation, kDeviation);
