@@ -1,5 +1,6 @@
 #include "viapoint/trajectory/bernstein_composition.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -148,11 +149,10 @@ Scaled from_monomials(const std::array<double, 6>& a, int degree) {
 }
 
 double magnitude(const Scaled& f) {
-  double largest = 0.0;
-  for (int i = 0; i <= f.degree; ++i) {
-    largest = std::max(largest, std::abs(f.data()[i]) * inverse_binomial(f.degree, i));
-  }
-  return largest;
+  if (f.degree < 0) return 0.0;
+  using Row = Eigen::Map<const Eigen::ArrayXd>;
+  const auto& inverses = kInverses[static_cast<std::size_t>(f.degree)];
+  return (Row(f.data(), f.degree + 1) * Row(inverses.data(), f.degree + 1)).abs().maxCoeff();
 }
 
 /// Rounding of u's own coefficients, as a share of the sum of its monomials' magnitudes: six terms

@@ -31,13 +31,19 @@ RateState state_at(const TrajectoryPiece& piece, double x) {
 
 /// The share of a piece's time at which it is at u; u never falls with time.
 double share_at(const TrajectoryPiece& piece, double u) {
-  double low = 0.0, high = 1.0;
-  constexpr int kBisections = 54;
-  for (int i = 0; i < kBisections; ++i) {
-    const double middle = 0.5 * (low + high);
-    (state_at(piece, middle).s < u ? low : high) = middle;
+  // Newton's method, kept between what is known to lie before and after by bisection.
+  double low = 0.0, high = 1.0, x = 0.5;
+  constexpr double kRounding = 0x1p-53;
+  constexpr int kMost = 100;
+  for (int i = 0; i < kMost && high - low > kRounding; ++i) {
+    const RateState state = state_at(piece, x);
+    (state.s < u ? low : high) = x;
+    const double newton = x + (u - state.s) / (state.rate * piece.duration);
+    const double next = newton > low && newton < high ? newton : 0.5 * (low + high);
+    if (std::abs(next - x) <= kRounding) return next;
+    x = next;
   }
-  return 0.5 * (low + high);
+  return x;
 }
 
 /// Where the earlier timing passes, asked for in the order of the path.
