@@ -38,7 +38,7 @@ from ._motion import Motion
 from ._plant import MujocoPlant
 from ._playback import Playback
 from ._playback_file import load_recording
-from ._points import PointList
+from ._points import PointList, TouchUp
 from ._program import Program
 from ._recording import Recording
 from ._report import Report
@@ -78,6 +78,7 @@ __all__ = [
     "Samples",
     "Singularity",
     "TlsFiles",
+    "TouchUp",
     "Zone",
     "__version__",
     "cells",

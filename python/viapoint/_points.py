@@ -8,6 +8,7 @@ import os
 import warnings
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
@@ -18,6 +19,7 @@ from ._arguments import ArrayLike, Vector, choice, file_name, vector, writing
 from ._point_file import FORMAT, VERSION, TaughtPoint, is_text, read_points
 from ._program import Program
 from ._robot import Robot, load_robot, require_robot, require_within_limits
+from ._rotation_vectors import rotation_vectors
 from ._zone import ZoneLike
 from .errors import (
     BadArgumentError,
@@ -27,6 +29,32 @@ from .errors import (
     PoseError,
 )
 from .frames import Frame
+
+
+@dataclass(frozen=True, eq=False)
+class TouchUp:
+    """What teaching a point anew has changed.
+
+    Attributes
+    ----------
+    name : str
+        The point.
+    joints : ndarray, (n,)
+        Change of each joint [rad or m].
+    moved, turned : float or None
+        Distance of the tool's point [m] and angle of the tool [rad]; None without kinematics.
+    """
+
+    name: str
+    joints: Vector
+    moved: float | None
+    turned: float | None
+
+    def __str__(self) -> str:
+        """Say it in one line."""
+        if self.moved is None or self.turned is None:
+            return f"{self.name}: joints by up to {np.abs(self.joints).max():.4g}"
+        return f"{self.name}: {1e3 * self.moved:.3f} mm and {np.degrees(self.turned):.3f}°"
 
 
 class PointList:
@@ -176,6 +204,39 @@ class PointList:
             points = self._on_disk() if self.path.exists() else dict(self._points)
             points[name] = TaughtPoint(joints, frame)
             self._write(points)
+
+    def touch_up(self, name: str, q: ArrayLike) -> TouchUp:
+        """Teach a point anew, on disk at once, and tell what that changes.
+
+        Parameters
+        ----------
+        name : str
+            A point of the list; its place in the order and its frame stay.
+        q : array_like, (n,)
+            Joints [rad or m], for example ``arm.joints``.
+
+        Returns
+        -------
+        TouchUp
+            How far the point has moved.
+
+        Raises
+        ------
+        BadArgumentError
+            No such point, or joints that do not fit.
+        JointLimitError, CouplingLimitError, FileError, BadProgramError
+            As for `record`.
+        """
+        before = self[name]
+        self.record(name, q, frame=self.frame(name))
+        now = self[name]
+        moved = turned = None
+        if self.robot.has_kinematics:
+            there, here = self.robot.fk(before), self.robot.fk(now)
+            moved = float(np.linalg.norm(here[:3, 3] - there[:3, 3]))
+            turn = rotation_vectors((here[:3, :3] @ there[:3, :3].T)[None])[0]
+            turned = float(np.linalg.norm(turn))
+        return TouchUp(name, now - before, moved, turned)
 
     def remove(self, name: str) -> None:
         """Delete a point, on disk at once.

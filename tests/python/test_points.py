@@ -49,6 +49,31 @@ def test_a_known_name_is_replaced_in_its_place(points, file, abc):
     np.testing.assert_array_equal(again["B"], abc["B"] + 0.1)
 
 
+def test_a_touch_up_tells_how_far_the_point_moves(points, file, abc):
+    q = abc["B"] + [0.01, 0, 0, 0, 0, 0.002]
+    change = points.touch_up("B", q)
+    np.testing.assert_array_equal(vp.PointList(file)["B"], q)
+    assert list(vp.PointList(file)) == ["A", "B", "C"]
+    np.testing.assert_allclose(change.joints, [0.01, 0, 0, 0, 0, 0.002], atol=1e-15)
+    before, now = points.robot.fk(abc["B"]), points.robot.fk(q)
+    assert change.moved == pytest.approx(np.linalg.norm(now[:3, 3] - before[:3, 3]))
+    cosine = 0.5 * (np.trace(now[:3, :3] @ before[:3, :3].T) - 1.0)
+    assert change.turned == pytest.approx(np.arccos(cosine), rel=1e-6)
+    assert f"{1e3 * change.moved:.3f} mm" in str(change)
+    assert points.touch_up("B", q).moved == 0.0
+    with pytest.raises(errors.BadArgumentError, match="no point"):
+        points.touch_up("D", q)
+
+
+def test_a_touch_up_without_kinematics_tells_the_joints(file):
+    robot = vp.joint_robot(2, velocity=1, acceleration=5, jerk=50)
+    points = vp.PointList(file, robot)
+    points.record("A", [0.0, 0.0])
+    change = points.touch_up("A", [0.1, -0.2])
+    assert change.moved is None
+    assert "0.2" in str(change)
+
+
 def test_remove_takes_a_point_out_of_the_file(points, file):
     points.remove("B")
     assert list(vp.PointList(file)) == ["A", "C"]
