@@ -139,3 +139,15 @@ def test_a_keyword_that_no_move_has_is_refused_by_name(robot):
     program = vp.Program(robot, start=HOME)
     with pytest.raises(TypeError, match="'sped'"):
         program.movel(robot.fk(HOME), sped=0.1)
+
+
+def test_a_corner_that_turns_the_tool_nowhere_is_proven_to_a_narrow_angle(robot):
+    home = robot.fk(HOME)
+    program = vp.Program(robot, start=HOME, zone=vp.deviation(0.3 * mm, angle=1e-6))
+    # In its own plane this arm keeps the tool's orientation to the last bit.
+    for x, z in ((0.02, 0.0), (0.03, 0.015), (0.05, 0.015)):
+        pose = home.copy()
+        pose[:3, 3] += (x, 0.0, z)
+        program.movel(pose)
+    verdict = verifier.verify_bytes(motion_text(program.plan()))
+    assert verdict.holds, verdict.findings

@@ -19,6 +19,8 @@ SHARE_SLACK = 1e-6
 """Of a zone, relative: rounding of what the planner proved just within it."""
 SAMPLES = 129
 """Of a path, among which the nearest to a point is looked for."""
+PLACE_COUNTS = 1e-6
+"""What a metre counts beside a unit quaternion where the nearest orientation is looked for."""
 
 
 def check_zones(motion: MotionFile, verdict: Verdict) -> None:
@@ -171,7 +173,7 @@ class _DeviationCheck(_Check):
             tools = self.tools(np.arange(len(self.paths)))
             self.lines = np.stack(
                 [
-                    points_at(motion.chain, motion.tools[t], row, space)
+                    paired_by(motion.chain, motion.tools[t], row, space)
                     for t, row in zip(tools, q, strict=True)
                 ]
             )
@@ -219,7 +221,7 @@ class _DeviationCheck(_Check):
         if self.space == "joints" or self.motion.chain is None:
             return q
         tool = self.motion.tools[int(self.tools(np.array([item]))[0])]
-        return points_at(self.motion.chain, tool, q, self.space)
+        return paired_by(self.motion.chain, tool, q, self.space)
 
 
 def compared(chain: Chain, tool: Array, joints: Ball, space: Space) -> Ball:
@@ -227,6 +229,17 @@ def compared(chain: Chain, tool: Array, joints: Ball, space: Space) -> Ball:
     if space == "turn":
         return tool_rotation(chain, tool, joints)
     return tool_point(chain, tool, joints)
+
+
+def paired_by(chain: Chain, tool: Array, q: Array, space: Space) -> Array:
+    """Return that by which the nearest places of paths with joints (k, n) are found, (k, 3 or 7).
+
+    Orientations that are the same all along have no nearest: there the tool's place decides.
+    """
+    points = points_at(chain, tool, q, space)
+    if space != "turn":
+        return points
+    return np.hstack([points, PLACE_COUNTS * points_at(chain, tool, q)])
 
 
 def points_at(chain: Chain, tool: Array, q: Array, space: Space = "tool") -> Array:
