@@ -241,6 +241,47 @@ def test_commands_that_say_nothing_or_nonsense_are_refused_with_a_reason(serve, 
         assert arm.job is None
 
 
+def test_requests_with_changed_bytes_are_answered_or_refused(serve):
+    from viapoint._wire import message
+
+    served = serve()
+    random = np.random.default_rng(11)
+    answers = set()
+    with vp.connect(served.url) as arm:
+        token = arm._remote.token
+        piece = message("Piece", duration=1.0, path=[0.0] * 36, timing=[0.0] * 6)
+        sound = {
+            "GetRun": message("GetRunRequest", run=1),
+            "GetLog": message("GetLogRequest", run=1, count=10),
+            "AddPieces": message("AddPiecesRequest", token=token, first=True, pieces=[piece]),
+            "Run": message("RunRequest", token=token, fingerprint=arm.robot.fingerprint),
+            "Steer": message("SteerRequest", token=token, run=1, wish=2),
+            "Jog": message("JogRequest", token=token, velocity=[0.0] * 6),
+            "TakeControl": message("TakeControlRequest", name="nobody"),
+            "Beat": message("BeatRequest", token=token),
+        }
+        options = [("grpc.enable_http_proxy", 0)]
+        with grpc.insecure_channel(f"127.0.0.1:{served.port}", options) as channel:
+            for method, request in sound.items():
+                call = channel.unary_unary(f"/viapoint.v1.Controller/{method}")
+                for _ in range(100):
+                    changed = bytearray(request.SerializeToString())
+                    for _ in range(random.integers(1, 4)):
+                        changed[random.integers(len(changed))] = random.integers(256)
+                    try:
+                        call(bytes(changed), timeout=60)
+                    except grpc.RpcError as error:
+                        answers.add(error.code().name)
+        assert answers <= {
+            *("INVALID_ARGUMENT", "PERMISSION_DENIED", "FAILED_PRECONDITION", "INTERNAL"),
+        }
+        assert len(answers) > 2
+        until(lambda: not arm.jogging)
+        assert served.process.poll() is None
+        assert arm.job is None or arm.job.wait(60)  # a change may have changed nothing
+        arm.run(vp.Program(arm.robot, start=arm.setpoint).movej(arm.setpoint + 0.02))
+
+
 def test_a_second_controller_on_the_same_address_does_not_start(serve):
     with pytest.raises(AssertionError, match="cannot listen on"):
         serve(listen=f"127.0.0.1:{serve().port}")
