@@ -28,7 +28,8 @@ with vp.connect(sys.argv[1]) as arm:
     except vp.errors.NotInControlError as error:
         print("lost:", error.message, flush=True)
 """
-HEARTBEAT = 0.5
+HEARTBEAT = 1.0
+"""Long enough that a loaded machine loses no beat [s]."""
 
 
 def until(holds):
