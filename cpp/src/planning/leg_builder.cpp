@@ -86,6 +86,20 @@ Leg LegBuilder::lin(const LinMove& move, const JointVector& start) const {
   return leg;
 }
 
+Leg LegBuilder::lin_to(const LinMove& move, const JointVector& start,
+                       const JointVector& goal) const {
+  const ToolWay way = way_of(move, robot_, start);
+  const InsertionOptions how = options_for(way.hold);
+  std::optional<Insertion> chosen;
+  if (leaves_one_open(robot_, how.hold)) {
+    chosen = insert_with_choice(robot_, *way.curve, start, &goal, how);
+  }
+  if (!chosen) {
+    throw MotionError(ErrorCode::kBranchChange, "no way along the line leads to these joints");
+  }
+  return leg_of(start, *std::move(chosen));
+}
+
 Leg LegBuilder::circ(const CircMove& move, const JointVector& start) const {
   return travel(way_of(move, robot_, start), start);
 }
@@ -111,12 +125,17 @@ Leg LegBuilder::spline(const SplineMove& move, const JointVector& start) const {
   return leg;
 }
 
-Leg LegBuilder::travel(const ToolWay& way, const JointVector& start) const {
-  if (way.hold == Hold::kWrist) return travel_by_wrist(way, start);
+InsertionOptions LegBuilder::options_for(Hold hold) const {
   InsertionOptions how;
   how.position_tolerance = tolerance_.position;
   how.angle_tolerance = tolerance_.angle;
-  how.hold = way.hold;
+  how.hold = hold;
+  return how;
+}
+
+Leg LegBuilder::travel(const ToolWay& way, const JointVector& start) const {
+  if (way.hold == Hold::kWrist) return travel_by_wrist(way, start);
+  const InsertionOptions how = options_for(way.hold);
   const auto* joints = std::get_if<JointTarget>(&way.goal);
   const JointVector* arrival = joints != nullptr && way.joints_count ? &joints->q : nullptr;
   try {
@@ -195,10 +214,7 @@ Leg LegBuilder::travel_by_wrist(const ToolWay& way, const JointVector& start) co
   };
   std::optional<MotionError> first;
   for (const JointVector& end : distinct_by_wrist(ends, robot_.joints() - 3)) {
-    InsertionOptions how;
-    how.position_tolerance = tolerance_.position;
-    how.angle_tolerance = tolerance_.angle;
-    how.hold = Hold::kWrist;
+    InsertionOptions how = options_for(Hold::kWrist);
     how.wrist_goal = end;
     try {
       Leg leg = follow(*way.curve, start, how);

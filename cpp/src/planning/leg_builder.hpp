@@ -25,6 +25,10 @@ class LegBuilder {
   /// @throws MotionError; kZeroLength where the move goes nowhere
   [[nodiscard]] Leg ptp(const PtpMove& move, const JointVector& start) const;
   [[nodiscard]] Leg lin(const LinMove& move, const JointVector& start) const;
+  /// The same to these joints, to rounding; only where the arm leaves one coordinate open.
+  /// @throws MotionError also where no such way is found
+  [[nodiscard]] Leg lin_to(const LinMove& move, const JointVector& start,
+                           const JointVector& goal) const;
   [[nodiscard]] Leg circ(const CircMove& move, const JointVector& start) const;
   [[nodiscard]] Leg turn(const TurnMove& move, const JointVector& start) const;
   [[nodiscard]] Leg spline(const SplineMove& move, const JointVector& start) const;
@@ -38,6 +42,7 @@ class LegBuilder {
   [[nodiscard]] Leg follow(const TaskCurve& curve, const JointVector& start,
                            const InsertionOptions& how) const;
   [[nodiscard]] static Leg leg_of(const JointVector& start, Insertion inserted);
+  [[nodiscard]] InsertionOptions options_for(Hold hold) const;
   [[nodiscard]] Leg travel(const ToolWay& way, const JointVector& start) const;
   [[nodiscard]] Leg travel_by_wrist(const ToolWay& way, const JointVector& start) const;
   /// Ends of the wrist joints to try, the nearest first.

@@ -201,18 +201,30 @@ void LegMerger::flush() {
   }
 }
 
-std::optional<Leg> LegMerger::merged() const {
-  const Leg &first = run_.front(), &last = run_.back();
-  const LegBuilder builder(*last.robot, tolerance_);
-  Leg leg;
+std::optional<Leg> LegMerger::one_leg() const {
+  const JointVector &start = run_.front().start, &goal = run_.back().goal;
+  const LegBuilder builder(*run_.back().robot, tolerance_);
+  const auto finished = [&](Leg leg) -> std::optional<Leg> {
+    leg.robot = run_.back().robot;
+    return end_at(leg, goal) ? std::optional(std::move(leg)) : std::nullopt;
+  };
   try {
-    leg = in_joints(last) ? builder.ptp({JointTarget{last.goal}}, first.start)
-                          : builder.lin(std::get<LinMove>(last.straight), first.start);
+    if (in_joints(run_.back())) return finished(builder.ptp({JointTarget{goal}}, start));
+    const auto& line = std::get<LinMove>(run_.back().straight);
+    if (auto leg = finished(builder.lin(line, start))) return leg;
+    // The way along the run has led joints that the tool leaves open to other places.
+    return finished(builder.lin_to(line, start, goal));
   } catch (const MotionError&) {
     return std::nullopt;  // the legs themselves are there already
   }
-  leg.robot = last.robot;
-  if (!end_at(leg, last.goal)) return std::nullopt;
+}
+
+std::optional<Leg> LegMerger::merged() const {
+  const Leg& last = run_.back();
+  std::optional<Leg> found = one_leg();
+  if (!found) return std::nullopt;
+  Leg& leg = *found;
+  const LegBuilder builder(*last.robot, tolerance_);
   builder.apply(leg, last.options, last.step);
   const Offset offset = offset_of(places_);
   leg.merged.distance = offset.worst;
@@ -228,7 +240,7 @@ std::optional<Leg> LegMerger::merged() const {
     point.merged_into = last.step;
     leg.merged.points.push_back(std::move(point));
   }
-  return leg;
+  return found;
 }
 
 }  // namespace viapoint::planning

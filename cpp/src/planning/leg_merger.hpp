@@ -50,6 +50,8 @@ class LegMerger {
   [[nodiscard]] static Place place_of(const Leg& leg, const JointVector& q);
   [[nodiscard]] static Offset offset_of(std::span<const Place> places);
   [[nodiscard]] bool goes_on_with(const Leg& leg);
+  /// From the start of the run to its end; nothing where none can be made.
+  [[nodiscard]] std::optional<Leg> one_leg() const;
   [[nodiscard]] std::optional<Leg> merged() const;
 
   LineTolerance tolerance_;

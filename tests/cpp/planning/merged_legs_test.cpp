@@ -113,6 +113,18 @@ TEST(MergedLegs, OfASampledArcStayWithinTheDeviationOfThePolylineBothWays) {
   EXPECT_TRUE(motion.trajectory.certificate().holds());
 }
 
+TEST(MergedLegs, OfSevenJointsEndWhereTheNextLegBegins) {
+  const RobotPtr arm = robot("panda");
+  const JointVector start = degrees({6, -29, 11, -115, 6, 92, 46});
+  Points taught;
+  Script script = sampled_arc(*arm, start, 120, {ZoneKind::kDeviation, 1e-4}, taught);
+  const PlannedMotion motion = MotionPlanner(arm).plan(script.program());
+  EXPECT_GT(merged_points(motion), 60u);
+  EXPECT_TRUE(motion.trajectory.certificate().holds());
+  const Points way = way_of(motion.trajectory, arm.get(), 8);
+  EXPECT_LE(farthest_from(way, taught), 1e-4 + LineTolerance().position);
+}
+
 TEST(MergedLegs, AreQuickerThanOnesWithOutputsBetweenThem) {
   const RobotPtr arm = robot("ur5e");
   const JointVector start = degrees({10, -80, 110, -120, -90, 10});
