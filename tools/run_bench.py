@@ -57,7 +57,9 @@ def measure(subject: str, options: argparse.Namespace) -> tuple[list[Row], list[
     if subject == "remote":
         return remote.measure(quick=options.quick), []
     if subject == "programs":
-        return programs.measure(options.problems or PROGRAMS, quick=options.quick), []
+        return programs.measure(
+            options.program, options.problems or PROGRAMS, quick=options.quick
+        ), []
     if options.problems:
         return profiles.measure_sweep(options.program.parent, options.problems), []
     return profiles.measure(options.program.parent, quick=options.quick)

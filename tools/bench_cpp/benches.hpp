@@ -20,8 +20,9 @@ void bench_walk(int paths);
 /// @param moves of the longest program
 void bench_growth(int moves);
 /// Lines, and arcs, helices and splines, at random on five arms as joints: how many can be
-/// followed, and whether any of 1000 places of every piece is beyond what was proven.
-/// @param problems of each of the two kinds for each arm
+/// followed, and whether any of 1000 places of every piece is beyond what was proven; then the
+/// knots of lines beside Taylor's.
+/// @param problems of each of the three kinds for each arm
 void bench_insertion(int problems);
 /// Inverse kinematics of every built-in arm at random poses within its limits: times, poses left
 /// unsolved, and branches that miss the joints that made the pose. @param poses for each arm
@@ -29,5 +30,9 @@ void bench_kinematics(int poses);
 /// Random straight lines, half of them through a singular wrist, followed pose by pose: steps that
 /// fail, jumps, and lines that no choice of branch follows. @param lines for each arm
 void bench_tracking(int lines);
+
+/// Prints random programs for four arms, each with its robot and seed, to be planned by who reads
+/// them. @param programs in all
+void print_random_programs(int programs);
 
 }  // namespace viapoint::bench

@@ -1,5 +1,5 @@
-// viapoint-insertion-bench: curves at random on five arms, inserted, and every proof checked on
-// 1000 places a piece.
+// Curves at random on five arms, inserted, and every proof checked on 1000 places a piece; and how
+// many knots that takes beside Taylor's bisection.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -19,6 +19,8 @@ namespace viapoint::bench {
 namespace {
 
 constexpr int kPlaces = 1000;
+/// Lines whose knots are counted, at most.
+constexpr int kMostCounted = 400;
 
 struct Arm {
   const char* name;
@@ -34,13 +36,57 @@ std::vector<Arm> arms() {
           {"rpp", testing::rpp(), Hold::kPosition}};
 }
 
+enum class Kind { kLines, kBlindLines, kCurves };
+
+const char* name_of(Kind kind) {
+  if (kind == Kind::kLines) return ", lines";
+  return kind == Kind::kBlindLines ? ", midpoint blind" : ", curves";
+}
+
+JointVector random_end(std::mt19937& random, const JointVector& start, const JointLimits& range) {
+  const double spread = 0.05 + 0.5 * std::uniform_real_distribution<double>()(random);
+  return start + spread * (testing::random_joints(random, range) - start);
+}
+
 /// A straight line to where the joints would be elsewhere; of its position alone where the arm
 /// cannot hold more.
-std::unique_ptr<TaskCurve> random_line(const Arm& arm, std::mt19937& random,
-                                       const JointVector& start, const JointLimits& range) {
-  const double spread = 0.05 + 0.5 * std::uniform_real_distribution<double>()(random);
-  const JointVector end = start + spread * (testing::random_joints(random, range) - start);
-  return std::make_unique<LineCurve>(arm.chain.pose(start), arm.chain.pose(end));
+LineCurve line_between(const Arm& arm, const JointVector& start, const JointVector& end) {
+  return {arm.chain.pose(start), arm.chain.pose(end)};
+}
+
+/// How much of the error that a straight joint motion makes at a quarter of the line is there in
+/// the middle, where Taylor's test looks; less than all only where the error changes its side.
+double seen_in_the_middle(const Arm& arm, const JointVector& start, const JointVector& end) {
+  const LineCurve line = line_between(arm, start, end);
+  const auto error = [&](double share) {
+    const Pose pose = arm.chain.pose(start + share * (end - start));
+    return (pose.translation() - line.at(share * line.length()).p).norm();
+  };
+  return error(0.5) / std::max({error(0.25), error(0.75), 1e-6});
+}
+
+/// Of many ends, the one to which the midpoint tells least.
+JointVector blind_end(const Arm& arm, std::mt19937& random, const JointVector& start,
+                      const JointLimits& range) {
+  constexpr int kEnds = 50;
+  JointVector blindest = random_end(random, start, range);
+  double least = seen_in_the_middle(arm, start, blindest);
+  for (int k = 1; k < kEnds; ++k) {
+    const JointVector end = random_end(random, start, range);
+    const double seen = seen_in_the_middle(arm, start, end);
+    if (seen >= least) continue;
+    least = seen;
+    blindest = end;
+  }
+  return blindest;
+}
+
+std::unique_ptr<TaskCurve> random_curve(const Arm& arm, Kind kind, std::mt19937& random,
+                                        const JointVector& start, const JointLimits& range) {
+  if (kind == Kind::kCurves) return testing::random_curve(arm.chain, random, start, arm.hold);
+  const JointVector end = kind == Kind::kLines ? random_end(random, start, range)
+                                               : blind_end(arm, random, start, range);
+  return std::make_unique<LineCurve>(line_between(arm, start, end));
 }
 
 /// What a sweep found.
@@ -76,7 +122,7 @@ void check(const Arm& arm, const TaskCurve& curve, const Insertion& found, Tally
   }
 }
 
-void sweep(const Arm& arm, bool lines, int problems) {
+void sweep(const Arm& arm, Kind kind, int problems) {
   const JointLimits range = testing::range_of(arm.chain);
   InsertionOptions options;
   options.hold = arm.hold;
@@ -84,9 +130,7 @@ void sweep(const Arm& arm, bool lines, int problems) {
   for (int seed = 0; seed < problems; ++seed) {
     std::mt19937 random(static_cast<unsigned>(seed));
     const JointVector start = 0.6 * testing::random_joints(random, range);
-    const std::unique_ptr<TaskCurve> curve =
-        lines ? random_line(arm, random, start, range)
-              : testing::random_curve(arm.chain, random, start, arm.hold);
+    const std::unique_ptr<TaskCurve> curve = random_curve(arm, kind, random, start, range);
     try {
       const Insertion found = insert_curve(arm.chain, range, *curve, start, options);
       ++tally.inserted;
@@ -96,7 +140,7 @@ void sweep(const Arm& arm, bool lines, int problems) {
       ++tally.named[std::string(to_string(error.code()))];
     }
   }
-  JsonLine line("insertion", std::string(arm.name) + (lines ? ", lines" : ", curves"));
+  JsonLine line("insertion", std::string(arm.name) + name_of(kind));
   line.add("problems", problems)
       .add("inserted", tally.inserted)
       .add("pieces", tally.pieces)
@@ -111,11 +155,60 @@ void sweep(const Arm& arm, bool lines, int problems) {
   }
 }
 
+/// Knots of the same lines by both methods, and how far Taylor's joint lines really are off.
+void count_knots(const Arm& arm, double tolerance, int problems) {
+  const JointLimits range = testing::range_of(arm.chain);
+  InsertionOptions options;
+  options.position_tolerance = tolerance;
+  options.angle_tolerance = tolerance / 0.3;
+  int lines = 0;
+  size_t ours = 0, taylors = 0;
+  double worst = 0.0;
+  for (int seed = 0; seed < problems; ++seed) {
+    std::mt19937 random(static_cast<unsigned>(seed));
+    const JointVector start = 0.6 * testing::random_joints(random, range);
+    const LineCurve curve = line_between(arm, start, random_end(random, start, range));
+    try {
+      const Insertion found = insert_curve(arm.chain, range, curve, start, options);
+      const TaylorKnots taylor = taylor_insertion(arm.chain, curve, start, found.knots.back(),
+                                                  tolerance, options.angle_tolerance);
+      ++lines;
+      ours += found.knots.size();
+      taylors += taylor.knots.size();
+      for (size_t k = 0; k + 1 < taylor.knots.size(); ++k) {
+        const JointPiece piece =
+            JointPiece::line(taylor.knots[k], taylor.knots[k + 1], taylor.s[k + 1] - taylor.s[k]);
+        const Deviation truth = bound_deviation(arm.chain, piece, curve, taylor.s[k],
+                                                0.02 * tolerance, 0.02 * options.angle_tolerance);
+        worst =
+            std::max({worst, truth.position / tolerance, truth.angle / options.angle_tolerance});
+      }
+    } catch (const MotionError&) {
+      continue;  // what cannot be followed has no knots
+    }
+  }
+  JsonLine("insertion: knots",
+           std::string(arm.name) + ", " + std::to_string(1e3 * tolerance).substr(0, 4) + " mm")
+      .add("lines", lines)
+      .add("knots", ours)
+      .add("taylor_knots", taylors)
+      .add("share_of_taylor", static_cast<double>(ours) / static_cast<double>(taylors))
+      .add("taylor_worst_over_tolerance", worst);
+}
+
 }  // namespace
 
 void bench_insertion(int problems) {
   for (const Arm& arm : arms()) {
-    for (const bool lines : {true, false}) sweep(arm, lines, problems);
+    for (const Kind kind : {Kind::kLines, Kind::kBlindLines, Kind::kCurves}) {
+      sweep(arm, kind, problems);
+    }
+  }
+  for (const Arm& arm : arms()) {
+    if (arm.hold != Hold::kPose) continue;  // Taylor's method is one of poses
+    for (const double tolerance : {1e-3, 1e-4, 1e-5}) {
+      count_knots(arm, tolerance, std::min(problems, kMostCounted));
+    }
   }
 }
 

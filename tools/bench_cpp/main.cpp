@@ -10,7 +10,8 @@ namespace {
 constexpr std::string_view kUsage =
     "usage: viapoint-bench tick [TICKS] | commands [SEQUENCES] | plan [PROGRAMS] |\n"
     "                      certificate [PROGRAMS] | walk [PATHS] | growth [MOVES] |\n"
-    "                      insertion [PROBLEMS] | kinematics [POSES] | tracking [LINES] | all\n"
+    "                      insertion [PROBLEMS] | kinematics [POSES] | tracking [LINES] | all |\n"
+    "                      programs [PROGRAMS]\n"
     "Prints one JSON object a line; times as its keys say.\n";
 
 constexpr int kTicks = 1'000'000;
@@ -69,6 +70,8 @@ int main(int argc, char** argv) {
       bench_kinematics(count);
     } else if (command == "tracking") {
       bench_tracking(count);
+    } else if (command == "programs") {
+      print_random_programs(count);
     } else if (command == "all" && argc == 2) {
       bench_kinematics(kPoses);
       bench_tracking(kLines);

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "planning/script.hpp"
 #include "viapoint/core/units.hpp"
 #include "viapoint/kinematics/robot_model.hpp"
 #include "viapoint/planning/motion_planner.hpp"
@@ -33,35 +34,5 @@ inline JointVector puma_b() {
 inline JointVector puma_c() {
   return degrees({0.0955, 65.7969, 14.3196, 15.3377, -20.173, 30.0401});
 }
-
-/// A program that is written step by step; line numbers count from 1.
-class Script {
- public:
-  Script(const RobotModel& robot, const JointVector& start) {
-    program_.robot = robot.name();
-    program_.robot_fingerprint = robot.fingerprint();
-    program_.start = start;
-  }
-  template <typename What>
-  Script& add(What what, MoveOptions options = {}) {
-    program_.steps.push_back(
-        {std::move(what), options, {"cell.py", static_cast<int>(program_.steps.size()) + 1}});
-    return *this;
-  }
-  Script& movej(const JointVector& q, Zone zone = {}) {
-    MoveOptions options;
-    options.zone = zone;
-    return add(PtpMove{JointTarget{q}}, options);
-  }
-  Script& movel(const Pose& pose, Zone zone = {}, Orientation orientation = Orientation::kLeast) {
-    MoveOptions options;
-    options.zone = zone;
-    return add(LinMove{PoseTarget{pose}, orientation}, options);
-  }
-  [[nodiscard]] MotionProgram& program() { return program_; }
-
- private:
-  MotionProgram program_;
-};
 
 }  // namespace viapoint::testing_planner

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "planning/planner_fixture.hpp"
+#include "planning/random_program.hpp"
 #include "planning/stream_fixture.hpp"
 
 namespace viapoint {
@@ -26,45 +27,6 @@ JointVector near_by(const RobotModel& robot, const JointVector& q, double reach,
     next[i] = std::clamp(q[i] + uniform(random) * span, low + 0.1 * span, high - 0.1 * span);
   }
   return next;
-}
-
-Zone some_zone(std::mt19937& random) {
-  std::uniform_real_distribution<double> uniform(0.0, 1.0);
-  switch (random() % 8) {
-    case 0:
-      return {};
-    case 1:
-    case 2:
-      return {ZoneKind::kRadius, 0.05 * uniform(random)};
-    case 3:
-    case 4:
-      return {ZoneKind::kDeviation, 0.01 * uniform(random)};
-    default:
-      return {ZoneKind::kJointDeviation, 0.05 * uniform(random)};
-  }
-}
-
-MotionProgram random_program(const RobotModel& robot, size_t moves, std::mt19937& random) {
-  JointVector q = 0.5 * (robot.limits().position_min + robot.limits().position_max);
-  if (robot.joints() == 6) q << 0.0, 0.4, 0.0, 0.3, 0.9, 0.2;
-  Script script(robot, q);
-  for (size_t k = 0; k < moves; ++k) {
-    q = near_by(robot, q, random() % 5 == 0 ? 0.1 : 0.02, random);
-    MoveOptions options;
-    options.zone = some_zone(random);
-    if (random() % 6 == 0) options.scale = 0.3;
-    if (random() % 3 == 0) {
-      if (random() % 6 == 0) options.speed = 0.1;
-      script.add(LinMove{PoseTarget{robot.forward().pose(q)}}, options);
-    } else {
-      script.add(PtpMove{JointTarget{q}}, options);
-    }
-    if (random() % 20 == 0) script.add(Wait{random() % 3 == 0 ? 0.0 : 0.05});
-    if (random() % 6 == 0) {
-      script.add(SetOutput{static_cast<int>(random() % 64), random() % 2 == 0});
-    }
-  }
-  return script.program();
 }
 
 /// Hands the steps over in bursts, and plays what comes.
@@ -98,14 +60,18 @@ class RandomStreams : public testing::TestWithParam<Sweep> {};
 TEST_P(RandomStreams, AreTheWholeProgramInChunks) {
   const RobotPtr arm = robot(GetParam().robot);
   const MotionPlanner planner(arm);
-  unsigned planned = 0;
   for (unsigned seed = 0; seed < GetParam().programs; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
     const size_t moves = 2 + random() % GetParam().most_moves;
-    const MotionProgram program = random_program(*arm, moves, random);
-    if (!planner.check(program).ok()) continue;
-    ++planned;
+    ProgramKind kind;
+    kind.moves = moves;
+    kind.wild = 0.0;
+    kind.curves = false;
+    MotionProgram program = random_program(*arm, kind, random);
+    for (Report report = planner.check(program); !report.ok(); report = planner.check(program)) {
+      ASSERT_TRUE(leave_out_errors(program, report)) << report.describe();
+    }
     const PlannedMotion whole = planner.plan(program);
     const Played played = stream(arm, program, random);
     EXPECT_EQ(played.problem, "");
@@ -123,12 +89,11 @@ TEST_P(RandomStreams, AreTheWholeProgramInChunks) {
     EXPECT_TRUE(motion.certificate().holds());
     EXPECT_LT(motion.certificate().acceleration_jump, 1e-6);
   }
-  EXPECT_GT(planned, GetParam().programs / 2);
 }
 
 INSTANTIATE_TEST_SUITE_P(Arms, RandomStreams,
-                         testing::Values(Sweep{"puma560", 60, 12}, Sweep{"ur5e", 40, 12},
-                                         Sweep{"scara", 40, 12}, Sweep{"puma560", 3, 198}),
+                         testing::Values(Sweep{"puma560", 30, 12}, Sweep{"ur5e", 20, 12},
+                                         Sweep{"scara", 20, 12}, Sweep{"puma560", 3, 198}),
                          [](const auto& tested) {
                            return std::string(tested.param.robot) + "_" +
                                   std::to_string(tested.param.most_moves);
