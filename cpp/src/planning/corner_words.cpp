@@ -52,7 +52,7 @@ std::vector<std::string> ways_out_of(const CornerOutcome& corner) {
   for (const Advice& advice : kAdvice) {
     if (corner.reason.find(advice.of) != std::string::npos) {
       ways.emplace_back(advice.way_out);
-      if (corner.angle_rules) {
+      if (corner.angle_rules && corner.used_angle > 0.9 * corner.asked.angle) {
         ways.insert(ways.begin(), "a larger angle of the zone: it is used up before the size");
       }
       break;

@@ -144,7 +144,10 @@ LegMerger::Offset LegMerger::offset_of(std::span<const Place> places) {
     const bool end = k + 1 == places.size();
     const double before = share, angle_before = angle;
     share = end ? 1.0 : along.dot(places[k].at - first.at) / square;
-    offset.longest = std::max(offset.longest, (places[k].at - places[k - 1].at).norm());
+    const double length = (places[k].at - places[k - 1].at).norm();
+    offset.longest = std::max(offset.longest, length);
+    if (k == 1) offset.first = length;
+    if (end) offset.last = length;
     // Written so that NaN, of a run that comes back to its start, does not go forward either.
     if (!(share > before)) {
       offset.worst = kNever;
@@ -184,9 +187,16 @@ bool LegMerger::goes_on_with(const Leg& leg) {
   places_.push_back(place_of(leg, leg.goal));
   const Offset offset = offset_of(places_);
   places_.pop_back();
+  // At an end without such a zone, the leg is left only where the point inside allows it.
+  const auto reach = [&](double length, const Zone& end) {
+    const bool allows = end.kind == ZoneKind::kRadius && end.size >= allowance.radius;
+    return allows ? 0.5 * length : length;
+  };
+  const double farthest = std::max(
+      {0.5 * offset.longest, reach(offset.first, before_), reach(offset.last, leg.options.zone)});
   return offset.worst <= allowance.distance &&
          offset.worst_turn <= std::min(allowance.turn, kMostTurn) &&
-         offset.worst + 0.5 * offset.longest <= allowance.radius;
+         offset.worst + farthest <= allowance.radius;
 }
 
 void LegMerger::flush() {

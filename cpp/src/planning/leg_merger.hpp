@@ -19,7 +19,7 @@ namespace viapoint::planning {
 ///  - the distance between the run and its leg, both ways, is the largest of a point, since the
 ///    distance from a segment is convex and the points go forward along it,
 ///  - what a corner deviates from the leg adds to it at most (triangle inequality),
-///  - for a radius, no place of the leg is farther than that from the nearest point.
+///  - for a radius, no place of the leg is farther than that from the nearest point that has one.
 /// What it does hangs on the legs alone, not on when they come.
 class LegMerger {
  public:
@@ -40,11 +40,12 @@ class LegMerger {
   };
   /// How far the points of a run are from the leg from its start to its end.
   struct Offset {
-    std::vector<double> point;  ///< distance of each inner point
-    std::vector<double> turn;   ///< angle there [rad]
-    double worst = 0.0;         ///< of all places; infinite where the points do not go forward
-    double worst_turn = 0.0;    ///< of all places
-    double longest = 0.0;       ///< distance of neighbouring points
+    std::vector<double> point;       ///< distance of each inner point
+    std::vector<double> turn;        ///< angle there [rad]
+    double worst = 0.0;              ///< of all places; infinite where the points do not go forward
+    double worst_turn = 0.0;         ///< of all places
+    double longest = 0.0;            ///< distance of neighbouring points
+    double first = 0.0, last = 0.0;  ///< of the ends from their neighbours
   };
 
   [[nodiscard]] static Place place_of(const Leg& leg, const JointVector& q);

@@ -143,6 +143,24 @@ TEST(MergedLegs, AreQuickerThanOnesWithOutputsBetweenThem) {
   EXPECT_LT(merged.trajectory.duration(), 0.9 * whole.trajectory.duration());
 }
 
+TEST(MergedLegs, LeaveNoLegFartherFromItsPointThanTheRadius) {
+  const RobotPtr arm = robot("ur5e");
+  const JointVector start = degrees({10, -80, 110, -120, -90, 10});
+  const Pose first = arm->forward().pose(start);
+  const auto merged_with = [&](double radius, double step) {
+    Script script(*arm, start);
+    for (int k = 1; k <= 2; ++k) {
+      Pose pose = first;
+      pose.translation() += Eigen::Vector3d(step * k, k == 1 ? 1e-4 : 0.0, 0.0);
+      script.movel(pose, {ZoneKind::kRadius, radius});
+    }
+    return merged_points(MotionPlanner(arm).plan(script.program()));
+  };
+  // The ends are rests, which allow nothing: the point must reach both.
+  EXPECT_EQ(merged_with(0.02, 0.03), 0u);
+  EXPECT_EQ(merged_with(0.02, 0.015), 1u);
+}
+
 TEST(MergedLegs, KeepPointsThatTurnTheToolOrChangeAWish) {
   const RobotPtr arm = robot("ur5e");
   const JointVector start = degrees({10, -80, 110, -120, -90, 10});
@@ -171,8 +189,10 @@ TEST(MergedLegs, KeepPointsThatTurnTheToolOrChangeAWish) {
   Zone tight = deviation;
   tight.angle = 0.002;
   EXPECT_EQ(merged_with(0.001, 0.1, tight), 0u);
-  // Within 3 mm of the points lies every place of the line, within 1 mm not.
-  EXPECT_EQ(merged_with(0.0, 0.1, {ZoneKind::kRadius, 3e-3}), 2u);
+  // Within 5 mm of the points lies every place of the line, within 1 mm not.
+  EXPECT_EQ(merged_with(0.0, 0.1, {ZoneKind::kRadius, 5e-3}), 2u);
+  EXPECT_EQ(merged_with(0.0, 0.1, {ZoneKind::kRadius, 3e-3}),
+            1u);  // the first is too far from the rest
   EXPECT_EQ(merged_with(0.0, 0.1, {ZoneKind::kRadius, 1e-3}), 0u);
   EXPECT_EQ(merged_with(0.0, 0.1, {ZoneKind::kJointDeviation, 1e-2}), 0u);
 }
