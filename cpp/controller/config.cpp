@@ -3,15 +3,12 @@
 #include <arpa/inet.h>
 #include <yaml-cpp/yaml.h>
 
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <utility>
 
 #include "kinematics/yaml_map.hpp"
+#include "viapoint/core/atomic_file.hpp"
 #include "viapoint/core/error.hpp"
 #include "viapoint/core/number_text.hpp"
 
@@ -94,6 +91,20 @@ void read_start(const YamlValue& value, Config& config) {
   if (!config.start.allFinite()) value.refuse("has a value that is not finite");
 }
 
+/// The stop begins a cycle or two after the twentieth of the heartbeat that the loop keeps for it.
+void check_heartbeat(YamlMap& map, const Config& config) {
+  constexpr int kLeastCycles = 40;
+  if (config.heartbeat >= kLeastCycles * config.cycle) return;
+  const auto seconds = [](std::chrono::nanoseconds time) {
+    return number_text(std::chrono::duration<double>(time).count()) + " s";
+  };
+  map.at(map.has("heartbeat") ? "heartbeat" : "cycle")
+      .refuse("the heartbeat is " + seconds(config.heartbeat) + "; allowed are " +
+                  std::to_string(kLeastCycles) + " cycles, " +
+                  seconds(kLeastCycles * config.cycle) + ", or more",
+              {"give a longer \"heartbeat\", or a shorter \"cycle\""});
+}
+
 Config read(YamlMap map) {
   Config config;
   config.robot = map.at("robot", "robot: puma560").text();
@@ -101,6 +112,7 @@ Config read(YamlMap map) {
   if (map.has("start")) read_start(map.at("start"), config);
   if (map.has("cycle")) config.cycle = time_in(map.at("cycle"), 1e-4, 1.0);
   if (map.has("heartbeat")) config.heartbeat = time_in(map.at("heartbeat"), 0.02, 60.0);
+  check_heartbeat(map, config);
   if (map.has("tool_speed")) {
     config.guard.tool_speed = number_in(map.at("tool_speed"), 0.0, 1e6, "m/s");
   }
@@ -158,12 +170,7 @@ Config load_config(const std::string& path) {
       std::filesystem::file_size(path, unknown) > kMostBytes) {
     refuse_file(path, "is no configuration: it has more than 1 MiB");
   }
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  if (!file || !(text << file.rdbuf())) {
-    refuse_file(path, std::string("the configuration cannot be read: ") + std::strerror(errno));
-  }
-  return config_from_yaml(text.str(), path);
+  return config_from_yaml(read_file(path), path);
 }
 
 }  // namespace viapoint::controller

@@ -121,6 +121,7 @@ grpc::Status ControllerService::TakeControl(Context* context, const v1::TakeCont
                                             v1::Control* reply) {
   return answer(context, [&] {
     const std::string name = name_of(request->name());
+    if (name.empty()) throw MotionError(ErrorCode::kBadArgument, "who asks gives no name");
     reply->set_token(host_.take_control(name));
     reply->set_heartbeat(seconds(heartbeat_));
     spdlog::info("\"{}\" has control ({})", name, context->peer());
@@ -141,7 +142,7 @@ grpc::Status ControllerService::GiveUpControl(Context* context,
 grpc::Status ControllerService::AddPieces(Context* context, const v1::AddPiecesRequest* request,
                                           v1::AddPiecesReply* /*reply*/) {
   return answer(context, [&] {
-    host_.add_pieces(request->token(), request->first(),
+    host_.add_pieces(request->token(), request->offset(),
                      pieces_of(request->pieces(), robot_->joints()));
   });
 }

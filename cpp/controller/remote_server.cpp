@@ -4,14 +4,11 @@
 #include <grpcpp/security/server_credentials.h>
 #include <grpcpp/server_builder.h>
 
-#include <cerrno>
 #include <chrono>
-#include <cstring>
-#include <fstream>
-#include <sstream>
 #include <string>
 #include <utility>
 
+#include "viapoint/core/atomic_file.hpp"
 #include "viapoint/core/error.hpp"
 
 namespace viapoint::controller {
@@ -28,27 +25,13 @@ constexpr int kIdle = 300'000;     ///< and is closed when it has asked nothing 
 /// Asks a silent connection whether it is there, and how long the answer may take [ms].
 constexpr int kProbe = 10'000, kProbeAnswer = 5'000;
 
-std::string read_pem(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  if (!file || !(text << file.rdbuf())) {
-    Problem problem;
-    problem.code = ErrorCode::kFile;
-    problem.file = path;
-    problem.message = std::string("cannot be read: ") + std::strerror(errno);
-    problem.ways_out = {"see \"tls\" in the configuration"};
-    throw MotionError(std::move(problem));
-  }
-  return text.str();
-}
-
 std::shared_ptr<grpc::ServerCredentials> credentials_of(const Config& config) {
   if (!config.tls) return grpc::InsecureServerCredentials();
   grpc::SslServerCredentialsOptions options(
       GRPC_SSL_REQUEST_AND_REQUIRE_CLIENT_CERTIFICATE_AND_VERIFY);
-  options.pem_root_certs = read_pem(config.tls->authority);
+  options.pem_root_certs = read_file(config.tls->authority);
   options.pem_key_cert_pairs.push_back(
-      {read_pem(config.tls->key), read_pem(config.tls->certificate)});
+      {read_file(config.tls->key), read_file(config.tls->certificate)});
   return grpc::SslServerCredentials(options);
 }
 

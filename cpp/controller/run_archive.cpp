@@ -7,6 +7,7 @@
 #include <ctime>
 #include <filesystem>
 #include <memory>
+#include <utility>
 
 #include "controller/log_file.hpp"
 #include "viapoint/core/error.hpp"
@@ -25,41 +26,49 @@ std::string file_of(const std::string& folder, std::uint64_t number) {
 
 }  // namespace
 
-RunArchive::RunArchive(const ArmHost& host, const std::string& folder)
-    : host_(host), folder_(folder) {
+RunArchive::RunArchive(const std::string& folder) : folder_(folder) {
   check_log_can_be_written(file_of(folder, 0));
   thread_ = std::jthread([this](const std::stop_token& stop) { follow(stop); });
 }
 
 RunArchive::~RunArchive() = default;
 
+void RunArchive::add(std::uint64_t number, std::shared_ptr<Job> job) {
+  const std::lock_guard lock(mutex_);
+  waiting_.push_back({number, std::move(job)});
+  if (waiting_.size() <= kMostWaiting) return;
+  spdlog::error("the log of run {} was dropped before it could be written",
+                waiting_.front().number);
+  waiting_.pop_front();
+}
+
 void RunArchive::follow(const std::stop_token& stop) {
-  std::uint64_t next = 1;
   bool was_asked = false;
   while (!was_asked) {
     was_asked = stop.stop_requested();  // one look more after that
-    while (next <= host_.status().run && archive(next)) ++next;
+    for (Run run = first(); run.job != nullptr && archive(run); run = first()) {
+      const std::lock_guard lock(mutex_);
+      if (!waiting_.empty() && waiting_.front().number == run.number) waiting_.pop_front();
+    }
     if (!was_asked) std::this_thread::sleep_for(kPeriod);
   }
 }
 
-bool RunArchive::archive(std::uint64_t number) const {
-  std::shared_ptr<Job> job;
+RunArchive::Run RunArchive::first() {
+  const std::lock_guard lock(mutex_);
+  return waiting_.empty() ? Run{} : waiting_.front();
+}
+
+bool RunArchive::archive(const Run& run) const {
   try {
-    job = host_.job(number);
-  } catch (const MotionError&) {
-    spdlog::error("the log of run {} was dropped before it could be written", number);
-    return true;
+    if (!run.job->wait(0.0)) return false;
+  } catch (const MotionError& error) {
+    spdlog::error("run {}: {}", run.number, error.problem().message);
   }
   try {
-    if (!job->wait(0.0)) return false;
+    write_log_csv(file_of(folder_, run.number), run.job->log());
   } catch (const MotionError& error) {
-    spdlog::error("run {}: {}", number, error.problem().message);
-  }
-  try {
-    write_log_csv(file_of(folder_, number), job->log());
-  } catch (const MotionError& error) {
-    spdlog::error("the log of run {} was not written: {}", number, error.problem().describe());
+    spdlog::error("the log of run {} was not written: {}", run.number, error.problem().describe());
   }
   return true;
 }

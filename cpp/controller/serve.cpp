@@ -3,6 +3,7 @@
 #include <pthread.h>
 #include <spdlog/spdlog.h>
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -14,6 +15,7 @@
 #include "controller/run_archive.hpp"
 #include "controller/stop_signals.hpp"
 #include "viapoint/core/error.hpp"
+#include "viapoint/core/number_text.hpp"
 #include "viapoint/drives/simulated_drive.hpp"
 #include "viapoint/kinematics/robot_description.hpp"
 #include "viapoint/kinematics/robot_model.hpp"
@@ -41,6 +43,13 @@ JointVector start_of(const Config& config, const RobotModel& robot) {
                                             " values, \"" + robot.name() + "\" has " +
                                             std::to_string(robot.joints()) + " joints");
   }
+  for (int i = 0; i < robot.joints(); ++i) {
+    const double least = robot.limits().position_min[i], most = robot.limits().position_max[i];
+    if (config.start[i] >= least && config.start[i] <= most) continue;
+    throw MotionError(ErrorCode::kFile, "start of joint " + std::to_string(i + 1) + " is " +
+                                            number_text(config.start[i]) + "; allowed are " +
+                                            number_text(least) + " to " + number_text(most));
+  }
   return config.start;
 }
 
@@ -61,6 +70,8 @@ int serve(const std::string& config_path) {
   const LoopOptions options = options_of(config, *robot);
   make_threads_small();
   StopSignals signals;
+  std::optional<RunArchive> archive;
+  if (!config.logs.empty()) archive.emplace(config.logs);
 
   ArmHost host(
       robot->limits(),
@@ -69,10 +80,11 @@ int serve(const std::string& config_path) {
             std::make_unique<SimulatedDrive>(rest.size() == 0 ? start : rest), robot->limits(),
             options);
       },
-      config.heartbeat);
+      config.heartbeat,
+      [&](std::uint64_t number, const std::shared_ptr<Job>& job) {
+        if (archive) archive->add(number, job);
+      });
   for (const std::string& line : host.status().shortcomings) spdlog::warn("{}", line);
-  std::optional<RunArchive> archive;
-  if (!config.logs.empty()) archive.emplace(host, config.logs);
   ControllerService service(host, robot, config.cycle, config.heartbeat);
   const RemoteServer server(service, config);
   spdlog::info("\"{}\" is served at {}:{}{}", robot->name(), config.host, server.port(),

@@ -5,8 +5,9 @@
 
 namespace viapoint::controller {
 
-/// While it lives, SIGINT and SIGTERM wait to be asked for instead of ending the process. Made
-/// before any other thread, so that all of them inherit it.
+/// While it lives, nothing from outside but SIGKILL ends the process in the midst of a motion:
+/// SIGINT, SIGTERM and SIGHUP (unless it is ignored, as under nohup) wait to be asked for, and
+/// SIGPIPE is ignored. Made before any other thread, so that all of them inherit it.
 class StopSignals {
  public:
   StopSignals();
@@ -21,6 +22,7 @@ class StopSignals {
 
  private:
   sigset_t signals_{}, before_{};
+  struct sigaction pipe_before_{};
 };
 
 }  // namespace viapoint::controller

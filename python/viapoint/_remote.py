@@ -206,6 +206,7 @@ class RemoteLoop:
         self.token = ""
         self._heart: Heart | None = None
         self._started: set[int] = set()
+        self._sending = threading.Lock()
         self.is_open = True
         if not watch:
             self._take_control()
@@ -234,11 +235,15 @@ class RemoteLoop:
 
     def run(self, motion: _core.PlannedMotion) -> RemoteExecution:
         """Send the motion, have it proven there, and begin it."""
-        for index, part in enumerate(_parts_of(_core.MotionPieces(motion))):
-            request = message("AddPiecesRequest", token=self.token, first=index == 0, pieces=part)
-            self.call("AddPieces", request, "AddPiecesReply")
-        request = message("RunRequest", token=self.token, fingerprint=self.about.fingerprint)
-        number = self.call("Run", request, "RunReply", patience=_PROOF).run
+        parts = _parts_of(_core.MotionPieces(motion))
+        offset = 0
+        with self._sending:  # or another thread's motion would run in its place
+            for part in parts:
+                request = message("AddPiecesRequest", token=self.token, offset=offset, pieces=part)
+                self.call("AddPieces", request, "AddPiecesReply")
+                offset += len(part)
+            request = message("RunRequest", token=self.token, fingerprint=self.about.fingerprint)
+            number = self.call("Run", request, "RunReply", patience=_PROOF).run
         self._started.add(number)
         return RemoteExecution(self, number)
 

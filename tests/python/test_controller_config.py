@@ -20,15 +20,18 @@ WRONG = {
     "cycle: fast": "cycle: expected a number",
     "heartbeat: .nan": "heartbeat: expected a number",
     "heartbeat: 0.001": "heartbeat: is 0.001; allowed are 0.02 to 60 s",
+    "heartbeat: 0.02": "allowed are 40 cycles, 0.08 s, or more",
+    "cycle: 0.01": "allowed are 40 cycles, 0.4 s, or more",
     "tool_speed: -1": "tool_speed: is -1",
     "drive: ethercat": '"ethercat" is no drive',
     "start: [0, 0]": 'start has 2 values, "puma560" has 6 joints',
     "start: [0, 0, 0, 0, 0, .inf]": "not finite",
+    "start: [9, 0, 0, 0, 0, 0]": "start of joint 1 is 9; allowed are",
     "start: []": "start: has 0 values",
     "workspace: {min: [0, 0, 0]}": '"max" is missing',
     "workspace: {min: [0, 0, 0], max: [1, 1, 0]}": "max must be beyond min",
     "tls: {authority: a.pem, certificate: b.pem}": '"key" is missing',
-    "tls: {authority: a.pem, certificate: b.pem, key: c.key}": "cannot be read",
+    "tls: {authority: a.pem, certificate: b.pem, key: c.key}": "cannot open: No such file",
     "logs: /nowhere/at/all": "the log cannot be written there",
     "cycle: [": "is no YAML",
     "---": "holds 2 documents",
@@ -56,7 +59,9 @@ def test_what_is_wrong_is_named(controller, tmp_path, line):
 
 
 def test_a_file_that_is_none_is_named(controller, tmp_path):
-    assert refusal(controller, tmp_path, "")[0] == 3
+    code, said = refusal(controller, tmp_path, "")
+    assert code == 3
+    assert "holds 0 documents" in said
     assert 'key "robot" is missing' in refusal(controller, tmp_path, "cycle: 0.002")[1]
     assert refusal(controller, tmp_path, "x" * (2 << 20))[0] == 3
     missing = subprocess.run(

@@ -1,5 +1,6 @@
 """A script drives a controller in another process with the words of the one in its own."""
 
+import contextlib
 import os
 import re
 import subprocess
@@ -98,6 +99,35 @@ def test_a_run_that_another_thread_stops_raises_where_it_is_waited_for(url):
             arm.run(program)
 
 
+def test_motions_that_two_threads_send_at_once_are_not_mixed_up(url, monkeypatch):
+    with vp.connect(url) as arm:
+        small, large = (
+            vp.Program(arm.robot, start=arm.setpoint).movej(arm.setpoint + way).plan()
+            for way in (0.01, 0.02)
+        )
+        loop = arm._remote
+        call, started = loop.call, []
+
+        def slowly(method, *told, **options):
+            answer = call(method, *told, **options)
+            if method == "AddPieces":
+                time.sleep(0.2)
+            return answer
+
+        def run(motion):
+            with contextlib.suppress(BusyError, NotAtStartError):  # the other was quicker
+                started.append((motion, loop.run(motion._core)))
+
+        monkeypatch.setattr(loop, "call", slowly)
+        threads = [threading.Thread(target=run, args=(motion,)) for motion in (small, large)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        ((motion, execution),) = started
+        assert execution.duration == motion.duration
+
+
 def test_a_jog_moves_the_arm_for_as_long_as_it_is_called(url):
     with vp.connect(url) as arm:
         start = arm.setpoint
@@ -149,6 +179,22 @@ def test_the_log_of_every_run_is_written_into_the_folder_of_logs(serve, tmp_path
     assert second.read_bytes() == (tmp_path / "here.csv").read_bytes()
 
 
+def test_no_log_of_quick_runs_is_left_out(serve, tmp_path):
+    logs = tmp_path / "logs"
+    logs.mkdir()
+    served = serve(logs=str(logs))
+    with vp.connect(served.url) as arm:
+        there = arm.setpoint + 1e-6
+        ways = [
+            vp.Program(arm.robot, start=begin).movej(end).plan()._core
+            for begin, end in ((arm.setpoint, there), (there, arm.setpoint))
+        ]
+        for k in range(20):
+            assert arm._remote.run(ways[k % 2]).wait(60)
+    assert served.end() == 0
+    assert {f.stem.partition("-")[2] for f in logs.iterdir()} == {f"run{k + 1}" for k in range(20)}
+
+
 def test_one_has_control_and_any_number_watch(url):
     with vp.connect(url) as arm:
         assert f"process {os.getpid()}" in arm.operator
@@ -172,6 +218,20 @@ def test_one_has_control_and_any_number_watch(url):
     with vp.connect(url) as arm:
         assert arm.job.state == "stopped"
         assert "gave up control" in arm.control_loss
+
+
+def test_a_watcher_that_is_interrupted_stops_nothing(url, monkeypatch):
+    def interrupt(timeout):
+        raise KeyboardInterrupt
+
+    with vp.connect(url) as arm, vp.connect(url, watch=True) as other:
+        job = arm.run(slow(arm), wait=False)
+        found = other.job
+        monkeypatch.setattr(found._execution, "wait", interrupt)
+        with pytest.raises(KeyboardInterrupt):
+            found.wait()
+        assert job.state == "running"
+        job.stop()
 
 
 def test_leaving_the_block_on_an_error_stops_the_run(url):

@@ -119,6 +119,25 @@ def test_sigterm_stops_on_the_path_and_the_script_is_told(serve):
             job.wait()
 
 
+def test_a_controller_whose_messages_nobody_reads_lives_on(serve):
+    served = serve()
+    served.process.stderr.close()
+    for _ in range(2):  # each is told of there
+        with vp.connect(served.url) as arm:
+            arm.run(vp.Program(arm.robot, start=arm.setpoint).movej(arm.setpoint + 0.01))
+    assert served.process.poll() is None
+
+
+def test_a_hang_up_stops_on_the_path(serve):
+    before = signal.signal(signal.SIGHUP, signal.SIG_DFL)  # not ignored by what it starts
+    try:
+        served = serve()
+    finally:
+        signal.signal(signal.SIGHUP, before)
+    served.process.send_signal(signal.SIGHUP)
+    assert served.process.wait(timeout=60) == 0
+
+
 def raw(port):
     return socket.create_connection(("127.0.0.1", port), timeout=60)
 
@@ -232,8 +251,8 @@ def test_commands_that_say_nothing_or_nonsense_are_refused_with_a_reason(serve, 
         ):
             status, reason = pieces(**(good | bad))
             assert (status, "piece 0" in reason) == ("INVALID_ARGUMENT", True)
-        name = "x" * 201
-        assert refusal("TakeControl", "TakeControlRequest", name=name)[0] == "INVALID_ARGUMENT"
+        for name in ("", "x" * 201):
+            assert refusal("TakeControl", "TakeControlRequest", name=name)[0] == "INVALID_ARGUMENT"
         fingerprint = arm.robot.fingerprint
         status, _ = refusal("Run", "RunRequest", token=token, fingerprint=fingerprint)
         assert status == "INVALID_ARGUMENT"  # nothing was added

@@ -228,7 +228,8 @@ ControllerLoop::ControllerLoop(std::unique_ptr<Drive> drive, const JointLimits& 
 
 ControllerLoop::~ControllerLoop() = default;
 
-std::shared_ptr<Job> ControllerLoop::run(std::shared_ptr<const Trajectory> trajectory) {
+std::shared_ptr<Job> ControllerLoop::run(std::shared_ptr<const Trajectory> trajectory,
+                                         const std::function<void()>& last_word) {
   const std::lock_guard lock(impl_->admission);
   if (trajectory == nullptr) throw MotionError(ErrorCode::kBadArgument, "there is no motion");
   impl_->require_no_fault();
@@ -243,6 +244,7 @@ std::shared_ptr<Job> ControllerLoop::run(std::shared_ptr<const Trajectory> traje
   }
   admit(*trajectory, impl_->limits, position());
   auto job = std::make_shared<LoopJob>(std::move(trajectory), impl_->log_records);
+  if (last_word) last_word();
   {
     const std::lock_guard job_lock(impl_->job_mutex);
     impl_->job = job;

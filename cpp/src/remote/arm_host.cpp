@@ -54,9 +54,11 @@ HostStatus look_at(const ControllerLoop& loop) {
 }  // namespace
 
 struct ArmHost::Impl {
-  Impl(const JointLimits& joint_limits, MakeLoop maker, std::chrono::nanoseconds heartbeat)
+  Impl(const JointLimits& joint_limits, MakeLoop maker, std::chrono::nanoseconds heartbeat,
+       OnRun on_run)
       : limits(joint_limits),
         make_loop(std::move(maker)),
+        tell_run(std::move(on_run)),
         lease(share_of(kLoopShare, heartbeat)),
         loop(make_loop({})),
         seat(share_of(kSeatShare, heartbeat)),
@@ -144,6 +146,7 @@ struct ArmHost::Impl {
 
   const JointLimits limits;
   const MakeLoop make_loop;
+  const OnRun tell_run;
   const std::chrono::nanoseconds lease;
 
   mutable std::mutex mutex;  ///< guards what follows; never held while a motion is proven
@@ -160,8 +163,9 @@ struct ArmHost::Impl {
   std::thread watchdog;
 };
 
-ArmHost::ArmHost(const JointLimits& limits, MakeLoop make_loop, std::chrono::nanoseconds heartbeat)
-    : impl_(std::make_unique<Impl>(limits, std::move(make_loop), heartbeat)) {}
+ArmHost::ArmHost(const JointLimits& limits, MakeLoop make_loop, std::chrono::nanoseconds heartbeat,
+                 OnRun on_run)
+    : impl_(std::make_unique<Impl>(limits, std::move(make_loop), heartbeat, std::move(on_run))) {}
 
 ArmHost::~ArmHost() { shut_down(); }
 
@@ -191,11 +195,18 @@ void ArmHost::give_up_control(const std::string& token) {
   impl_->abandon(lock);
 }
 
-void ArmHost::add_pieces(const std::string& token, bool first,
+void ArmHost::add_pieces(const std::string& token, std::size_t offset,
                          std::vector<TrajectoryPiece> pieces) {
   const std::lock_guard lock(impl_->mutex);
   impl_->seat.require(token);
-  if (first) impl_->pending.clear();
+  if (offset == 0) impl_->pending.clear();
+  if (offset != impl_->pending.size()) {
+    throw MotionError(ErrorCode::kBadArgument,
+                      "the pieces from " + std::to_string(offset) + " on came where " +
+                          std::to_string(impl_->pending.size()) +
+                          " were there: a part is missing, came twice, or is another motion's",
+                      {"send the motion again, from its first piece on"});
+  }
   const std::size_t count = impl_->pending.size() + pieces.size();
   if (count > kMaxPieces) {
     throw MotionError(ErrorCode::kBadArgument,
@@ -214,15 +225,15 @@ std::uint64_t ArmHost::run(const std::string& token) {
 
   // Long motions take a while to prove; beats and looks are answered meanwhile.
   const auto trajectory = std::make_shared<const Trajectory>(std::move(pieces), impl_->limits);
-  const std::shared_ptr<Job> job = loop->run(trajectory);
-
-  lock.lock();
+  const std::shared_ptr<Job> job = loop->run(trajectory, [&] {
+    // Control may have been lost meanwhile, and be another's: then nothing begins.
+    lock.lock();
+    static_cast<void>(impl_->working_loop(token));
+  });
   const std::uint64_t number = ++impl_->last_run;
   impl_->runs.push_back({number, job});
+  if (impl_->tell_run) impl_->tell_run(number, job);
   if (impl_->runs.size() > kRunsKept) impl_->runs.pop_front();
-  // Control may have been lost while the motion was proven.
-  if (!impl_->seat.holds(token)) job->pause();
-  impl_->seat.require(token);
   return number;
 }
 

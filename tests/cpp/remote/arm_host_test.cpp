@@ -102,7 +102,7 @@ class Operator {
 };
 
 std::uint64_t run(ArmHost& host, const std::string& token, std::vector<TrajectoryPiece> pieces) {
-  host.add_pieces(token, true, std::move(pieces));
+  host.add_pieces(token, 0, std::move(pieces));
   return host.run(token);
 }
 
@@ -123,7 +123,7 @@ TEST(ArmHost, RefusesWhoIsNotInControl) {
   const std::uint64_t number = run(host, token, move(0.5));
   for (const char* stranger : {"", "bob"}) {
     EXPECT_THROW(host.beat(stranger), NotInControl);
-    EXPECT_THROW(host.add_pieces(stranger, true, move(0.5)), NotInControl);
+    EXPECT_THROW(host.add_pieces(stranger, 0, move(0.5)), NotInControl);
     EXPECT_THROW((void)host.run(stranger), NotInControl);
     EXPECT_THROW(host.steer(stranger, number, Steering::kStop), NotInControl);
     EXPECT_THROW(host.set_override(stranger, 0.5), NotInControl);
@@ -210,11 +210,59 @@ TEST(ArmHost, HoldsAMotionToItsLargestNumberOfPieces) {
   ArmHost host(kLimits, simulated(), seconds(60));
   const std::string token = host.take_control("alice");
   const std::vector<TrajectoryPiece> many(ArmHost::kMaxPieces / 2, move(1.0).front());
-  host.add_pieces(token, true, many);
-  host.add_pieces(token, false, many);
-  EXPECT_THROW(host.add_pieces(token, false, move(1.0)), MotionError);
-  host.add_pieces(token, true, move(0.5));
+  host.add_pieces(token, 0, many);
+  host.add_pieces(token, many.size(), many);
+  EXPECT_THROW(host.add_pieces(token, ArmHost::kMaxPieces, move(1.0)), MotionError);
+  host.add_pieces(token, 0, move(0.5));
   EXPECT_TRUE(host.job(host.run(token))->wait(60.0));
+}
+
+TEST(ArmHost, RefusesAPartThatIsMissingOrComesTwice) {
+  ArmHost host(kLimits, simulated(), seconds(60));
+  const std::string token = host.take_control("alice");
+  host.add_pieces(token, 0, move(0.5));
+  host.add_pieces(token, 1, move(0.5, 1.0));
+  EXPECT_THROW(host.add_pieces(token, 1, move(0.5, 1.0)), MotionError);
+  EXPECT_THROW(host.add_pieces(token, 3, move(0.5, 2.0)), MotionError);
+  EXPECT_TRUE(host.job(host.run(token))->wait(60.0));
+  EXPECT_EQ(host.status().setpoint, JointVector(JointVector::Constant(2, 2.0)));
+  EXPECT_THROW(host.add_pieces(token, 2, move(0.5, 2.0)), MotionError);
+}
+
+TEST(ArmHost, BeginsNothingThatWasProvenForAnOperatorWhoHasLeft) {
+  ControllerLoop* loop = nullptr;
+  ArmHost host(
+      kLimits,
+      [&loop](const JointVector& rest) {
+        auto made = simulated()(rest);
+        loop = made.get();
+        return made;
+      },
+      seconds(60));
+  const std::string token = host.take_control("alice");
+  host.add_pieces(token, 0, move(0.5));
+  std::jthread alice;
+  bool was_refused = false;
+  const auto leave = [&] {
+    // Nothing else is admitted meanwhile, so that hers waits for her to have left.
+    alice = std::jthread([&] {
+      try {
+        (void)host.run(token);
+      } catch (const NotInControl&) {
+        was_refused = true;
+      }
+    });
+    std::this_thread::sleep_for(milliseconds(50));
+    host.give_up_control(token);
+    (void)host.take_control("bob");
+    throw NotInControl("enough");
+  };
+  EXPECT_THROW((void)loop->run(std::make_shared<const Trajectory>(move(0.5), kLimits), leave),
+               NotInControl);
+  alice.join();
+  EXPECT_TRUE(was_refused);
+  EXPECT_EQ(host.status().run, 0U);
+  EXPECT_FALSE(host.status().busy);
 }
 
 TEST(ArmHost, ForgetsOldRunsByTheirNumber) {

@@ -100,7 +100,9 @@ class ControllerLoop {
   /// certificate (made anew here, from the pieces) that does not hold, kNotAtStart when the arm
   /// rests farther than 1e-6 rad or m from the motion's first point, kNotAtRest, kBusy (also while
   /// the arm jogs).
-  [[nodiscard]] std::shared_ptr<Job> run(std::shared_ptr<const Trajectory> trajectory);
+  /// @param last_word called when all is proven, and the run begins next; what it throws refuses it
+  [[nodiscard]] std::shared_ptr<Job> run(std::shared_ptr<const Trajectory> trajectory,
+                                         const std::function<void()>& last_word = {});
   /// Hold-to-run: joint velocities (n,) [rad/s or m/s] for the next 250 ms; calling again renews
   /// them, zero or silence brings the arm to rest within its limits. Joints stop at their position
   /// limits by themselves, the arm before its coupled limits. Refused: kBusy while a run is under

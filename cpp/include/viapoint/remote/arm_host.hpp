@@ -44,10 +44,14 @@ class ArmHost {
   /// operator takes control. @param rest where the arm stood last; empty at first
   using MakeLoop = std::function<std::unique_ptr<ControllerLoop>(const JointVector& rest)>;
 
+  /// Told of every run as it begins, its number and the run; it has to be quick.
+  using OnRun = std::function<void(std::uint64_t number, const std::shared_ptr<Job>& job)>;
+
   /// @param heartbeat an operator has to be heard of within it [> 0]: what moves has begun to stop
   ///        when so much time has passed since the last beat
   /// @throws what `make_loop` throws
-  ArmHost(const JointLimits& limits, MakeLoop make_loop, std::chrono::nanoseconds heartbeat);
+  ArmHost(const JointLimits& limits, MakeLoop make_loop, std::chrono::nanoseconds heartbeat,
+          OnRun on_run = {});
   /// As shut_down().
   ~ArmHost();
   ArmHost(const ArmHost&) = delete;
@@ -60,9 +64,11 @@ class ArmHost {
   void beat(const std::string& token);
   void give_up_control(const std::string& token);
 
-  /// Collects a motion part by part; `first` forgets what came before.
-  /// @throws MotionError(kBadArgument) beyond kMaxPieces
-  void add_pieces(const std::string& token, bool first, std::vector<TrajectoryPiece> pieces);
+  /// Collects a motion part by part.
+  /// @param offset how many pieces of it came before; 0 forgets what there is
+  /// @throws MotionError(kBadArgument) for another offset, and beyond kMaxPieces
+  void add_pieces(const std::string& token, std::size_t offset,
+                  std::vector<TrajectoryPiece> pieces);
   static constexpr std::size_t kMaxPieces = 100'000;
   /// Proves the motion collected and runs it; returns the run's number, from 1.
   /// @throws MotionError of ControllerLoop::run, with the certificate's first problem
