@@ -14,6 +14,8 @@ from ._zone import ZoneLike
 from .cells import Gripper, lifted
 from .errors import BadArgumentError
 
+_MOST_STROKES = 10_000
+
 
 class WorkSteps(Steps):
     """Steps of a program that are made of several moves."""
@@ -107,15 +109,17 @@ class WorkSteps(Steps):
         if travel == 0.0:
             raise BadArgumentError("pitch is 0 m; a thread has one.")
         whole = 2.0 * math.pi * deep / travel
-        strokes = max(
-            1,
-            math.ceil(
-                abs(whole) / number(most_turn, "most_turn", "rad", above=0.0) * (1.0 - 1e-12)
-            ),
-        )
+        most = number(most_turn, "most_turn", "rad", above=0.0)
+        needed = abs(whole) / most * (1.0 - 1e-12)
+        if not needed <= _MOST_STROKES:
+            raise BadArgumentError(
+                f"{deep:g} m of pitch {travel:g} m take {needed:.4g} strokes of {most:.4g} rad; "
+                f"allowed are {_MOST_STROKES}."
+            )
+        strokes = max(1, math.ceil(needed))
         if strokes > 1 and gripper is None:
             raise BadArgumentError(
-                f"{deep:g} m take {abs(whole):.4g} rad, more than a stroke of {most_turn:.4g} rad.",
+                f"{deep:g} m take {abs(whole):.4g} rad, more than a stroke of {most:.4g} rad.",
                 ways_out=["Give the gripper that lets go between strokes.", "Raise most_turn."],
             )
         angle = whole / strokes

@@ -104,7 +104,7 @@ class Report:
     cycles : int
         Number of logs.
     poses : tuple of PoseAccuracy
-        Of every place where the arm came to rest, in order.
+        Of every place where the arm rested for a cycle or longer, in order.
     path : PathAccuracy or None
         Of the way between; None where the tool never moved.
     """
@@ -192,7 +192,8 @@ def path_accuracy(commanded: ArrayLike, attained: ArrayLike) -> PathAccuracy:
 def from_logs(logs: Sequence[RunLog], *, places: int = 50) -> Report:
     """Compare what drives measured with what they were told, over runs of one program.
 
-    Poses are taken in the last cycle of every rest but the one before the motion. The path is that
+    Poses are taken in the last cycle of every rest but the one before the motion. A stop that goes
+    on at once rests in no cycle: let the program ``wait`` where a pose counts. The path is that
     of the tool's setpoints in the first log; every cycle is cut by the plane across it at `places`
     places, equally far apart along it.
 

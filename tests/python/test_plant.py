@@ -97,7 +97,8 @@ def test_tracking_is_deterministic_and_keeps_the_rest_of_the_log(tmp_path):
     np.testing.assert_array_equal(read.measured, first.measured)
 
 
-def test_what_does_not_fit_is_refused():
+def test_what_does_not_fit_is_refused(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)  # MuJoCo leaves a file of its warnings where it runs
     robot = vp.load_robot("scara")
     plant = vp.MujocoPlant(robot, start=HOMES["scara"])
     with pytest.raises(errors.BadArgumentError, match="from where the plant is"):

@@ -101,6 +101,13 @@ def test_cubes_that_do_not_slide_are_refused():
     cells.on_feeder(0.47, 0.05, friction=0.5)
 
 
+@pytest.mark.parametrize("pitch", [1e-9, 1e-320])
+def test_a_screw_that_would_never_be_in_is_refused(ur5e, home, pitch):
+    program = vp.Program(ur5e, start=home)
+    with pytest.raises(errors.BadArgumentError, match="allowed are 10000"):
+        program.screw_in(0.1, pitch, gripper=Gripper(output=1))
+
+
 def test_a_screw_turns_with_its_thread_in_strokes(ur5e, home):
     """10 mm of pitch 2 mm: five turns, in strokes of at most 3 rad: eleven."""
     gripper = Gripper(output=1, dwell=0.05)
