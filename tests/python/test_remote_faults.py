@@ -273,7 +273,7 @@ def test_requests_with_changed_bytes_are_answered_or_refused(serve):
         sound = {
             "GetRun": message("GetRunRequest", run=1),
             "GetLog": message("GetLogRequest", run=1, count=10),
-            "AddPieces": message("AddPiecesRequest", token=token, first=True, pieces=[piece]),
+            "AddPieces": message("AddPiecesRequest", token=token, pieces=[piece]),
             "Run": message("RunRequest", token=token, fingerprint=arm.robot.fingerprint),
             "Steer": message("SteerRequest", token=token, run=1, wish=2),
             "Jog": message("JogRequest", token=token, velocity=[0.0] * 6),
