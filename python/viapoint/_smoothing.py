@@ -202,11 +202,20 @@ def _control(
     )
     control = np.empty((count, samples.shape[1]))
     if first is None:
-        control[:] = np.linalg.solve(matrix, right)
+        control[:] = _solved(matrix, right)
     else:
         control[0] = first
-        control[1:] = np.linalg.solve(matrix[1:, 1:], right[1:] - np.outer(matrix[1:, 0], first))
+        control[1:] = _solved(matrix[1:, 1:], right[1:] - np.outer(matrix[1:, 0], first))
     return control
+
+
+def _solved(matrix: Vector, right: Vector) -> Vector:
+    """Solve; of what the samples leave open take the shortest."""
+    try:
+        solution: Vector = np.linalg.solve(matrix, right)
+    except np.linalg.LinAlgError:
+        solution = np.linalg.lstsq(matrix, right)[0]
+    return solution
 
 
 @lru_cache(maxsize=8)

@@ -333,3 +333,16 @@ def test_a_file_cut_short_or_changed_is_refused(saved, tmp_path):
             path.write_bytes(broken)
             with pytest.raises(errors.BadProgramError):
                 vp.load_recording(path)
+
+
+def test_a_short_way_between_reversals_whose_samples_leave_its_curve_open_is_fitted(ur5e):
+    random = np.random.default_rng(13)
+    count = random.integers(3, 600)
+    random.integers(4)
+    t = np.cumsum(random.uniform(0.001, 0.02, count))
+    q = np.outer(np.abs(np.sin(2 * t)), random.uniform(-1, 1, 6))
+    q += np.array([0, -1.5, 1.5, -1.5, -1.5, 0])
+    q += random.normal(0, 10 ** random.uniform(-6, -3.5), (count, 6))
+    tolerance = 0.00037054920584675123
+    recording = vp.Recording.of_samples(ur5e, t, q, (np.sin(3 * t) > 0).astype(int))
+    assert recording.fit(vp.joint_deviation(tolerance)).deviation <= tolerance
