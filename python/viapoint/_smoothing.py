@@ -202,7 +202,7 @@ def _control(
     )
     control = np.empty((count, samples.shape[1]))
     if first is None:
-        control[:] = _solved(matrix, right)
+        control[:] = _solved(matrix, right.astype(np.float64))
     else:
         control[0] = first
         control[1:] = _solved(matrix[1:, 1:], right[1:] - np.outer(matrix[1:, 0], first))
@@ -212,9 +212,9 @@ def _control(
 def _solved(matrix: Vector, right: Vector) -> Vector:
     """Solve; of what the samples leave open take the shortest."""
     try:
-        solution: Vector = np.linalg.solve(matrix, right)
+        solution: Vector = np.asarray(np.linalg.solve(matrix, right), dtype=np.float64)
     except np.linalg.LinAlgError:
-        solution = np.linalg.lstsq(matrix, right)[0]
+        solution = np.asarray(np.linalg.lstsq(matrix, right)[0], dtype=np.float64)
     return solution
 
 
