@@ -100,16 +100,20 @@ def controller() -> str:
 def serve(controller: str, tmp_path: Path) -> Iterator[Callable[..., Served]]:
     """Start controllers with the configuration given, on a port that the system chooses.
 
-    The heartbeat is long unless told otherwise, so that a loaded machine loses no beat.
+    The heartbeat is long unless told otherwise, so that a loaded machine loses no beat. ``before``
+    is called in the new process before the controller begins.
     """
     processes: list[subprocess.Popen[str]] = []
 
-    def start(**keys: object) -> Served:
+    def start(before: Callable[[], None] | None = None, **keys: object) -> Served:
         config = tmp_path / f"controller{len(processes)}.yaml"
         told = {"robot": "puma560", "listen": "127.0.0.1:0", "heartbeat": 20.0} | keys
         config.write_text(json.dumps(told), encoding="utf-8")  # which is YAML, too
         process = subprocess.Popen(
-            [controller, "--config", str(config)], stderr=subprocess.PIPE, text=True
+            [controller, "--config", str(config)],
+            stderr=subprocess.PIPE,
+            text=True,
+            preexec_fn=before,
         )
         processes.append(process)
         assert process.stderr is not None
