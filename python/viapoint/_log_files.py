@@ -70,7 +70,7 @@ def load_log(path: str | os.PathLike[str], robot: Robot | None = None) -> RunLog
     Returns
     -------
     RunLog
-        To the last bit what was saved. The period of a .csv is the median of its stamps'.
+        To the last bit what was saved. The period of a .csv is the median of its cycles'.
 
     Raises
     ------
@@ -191,9 +191,10 @@ def _read_csv(text: str) -> Columns:
 
 
 def _period_of(columns: Columns) -> float:
-    """Take the median of the stamps' steps, to the microsecond: wake-ups are late now and then."""
+    """Take the median step between the instants that were due; a cycle is slept through at times."""
     cycles = np.diff(columns["cycle"].astype(np.int64))
     if len(cycles) == 0:
         return CYCLE
-    steps: Vector = np.diff(columns["stamp"]) / np.maximum(cycles, 1)
-    return round(float(np.median(steps)) * 1e-9, 6)
+    due = columns["stamp"] - columns["latency"]
+    steps: Vector = np.diff(due) / np.maximum(cycles, 1)
+    return round(float(np.median(steps)) * 1e-9, 9)
