@@ -191,7 +191,7 @@ def _read_csv(text: str) -> Columns:
 
 
 def _period_of(columns: Columns) -> float:
-    """Take the median step between the instants that were due; a cycle is slept through at times."""
+    """Take the median step between the instants due; now and then a cycle is slept through."""
     cycles = np.diff(columns["cycle"].astype(np.int64))
     if len(cycles) == 0:
         return CYCLE
