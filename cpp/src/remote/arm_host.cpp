@@ -121,12 +121,17 @@ struct ArmHost::Impl {
                                                    std::to_string(kRunsKept) + " are kept");
   }
 
-  /// A loop that has failed, or whose drive was released, makes room for a new one. @pre locked
-  void renew_loop() {
+  /// A loop that has failed, or whose drive was released, makes room for a new one.
+  /// @pre locked, and no other renewal under way
+  void renew_loop(std::unique_lock<std::mutex>& lock) {
     const bool was_released = is_release_wished && (runs.empty() || has_ended(*runs.back().job));
     if (loop != nullptr && loop->fault().empty() && !was_released) return;
     if (loop != nullptr) last = look_at(*loop);
-    loop.reset();  // its drive has to be free for the next
+    std::shared_ptr<ControllerLoop> spent = std::exchange(loop, nullptr);
+    lock.unlock();
+    spent.reset();  // its drive has to be free for the next; it ends under locks of its own
+    lock.lock();
+    if (quits) throw NotInControl("the controller is shutting down");
     try {
       loop = make_loop(last.measured);
     } catch (const MotionError& error) {
@@ -149,6 +154,7 @@ struct ArmHost::Impl {
   const OnRun tell_run;
   const std::chrono::nanoseconds lease;
 
+  std::mutex renewal;        ///< taken before the next one: one renewal of the loop at a time
   mutable std::mutex mutex;  ///< guards what follows; never held while a motion is proven
   std::condition_variable changed;
   std::shared_ptr<ControllerLoop> loop;  ///< null only where the drive could not be enabled anew
@@ -170,9 +176,10 @@ ArmHost::ArmHost(const JointLimits& limits, MakeLoop make_loop, std::chrono::nan
 ArmHost::~ArmHost() { shut_down(); }
 
 std::string ArmHost::take_control(const std::string& name) {
-  const std::lock_guard lock(impl_->mutex);
+  const std::lock_guard renewal(impl_->renewal);
+  std::unique_lock lock(impl_->mutex);
   if (impl_->quits) throw NotInControl("the controller is shutting down");
-  if (!impl_->seat.taken()) impl_->renew_loop();
+  if (!impl_->seat.taken()) impl_->renew_loop(lock);
   std::string token = impl_->seat.take(name, steady_clock::now());
   impl_->loop->keep_alive(impl_->lease);
   impl_->changed.notify_all();
@@ -291,14 +298,16 @@ std::shared_ptr<Job> ArmHost::job(std::uint64_t run) const {
 
 void ArmHost::shut_down() {
   std::shared_ptr<Job> job;
+  std::shared_ptr<ControllerLoop> loop;
   {
     const std::lock_guard lock(impl_->mutex);
     impl_->quits = true;
+    loop = impl_->loop;
     if (!impl_->runs.empty()) job = impl_->runs.back().job;
   }
   impl_->changed.notify_all();
   if (job != nullptr) job->stop();
-  if (impl_->loop != nullptr) impl_->end_jog(*impl_->loop);
+  if (loop != nullptr) impl_->end_jog(*loop);
   while (job != nullptr && !has_ended(*job)) {
     try {
       if (job->wait(kSlice)) break;
