@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from typing import Literal
 
 import numpy as np
@@ -83,7 +84,7 @@ def quaternion_distance(angle: Array) -> Array:
     return result
 
 
-class _Check:
+class _Check(ABC):
     what = ""
     what_turns = ""
 
@@ -120,9 +121,9 @@ class _Check:
             )
         return float((worst.bound / np.maximum(whole, 1e-300)).max())
 
+    @abstractmethod
     def bounds(self, items: Indices, middle: Array, half: Array) -> tuple[Array, Array]:
         """Bound what the zone limits: each kind of zone in its own way."""
-        raise NotImplementedError
 
     def points(self, paths: Indices, middle: Array, half: Array, tool: Array) -> Ball:
         """Jets of what is compared."""
