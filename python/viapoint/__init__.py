@@ -46,6 +46,7 @@ from ._robot import Robot, joint_robot, load_robot
 from ._run_log import RunLog
 from ._samples import Samples
 from ._simulation import simulate, simulate_jog
+from ._stream import LateStep, Stream, StreamJob
 from ._tls import TlsFiles
 from ._units import deg, mm
 from ._zone import Zone, deviation, joint_deviation, radius
@@ -63,6 +64,7 @@ __all__ = [
     "Job",
     "JointLimits",
     "Knots",
+    "LateStep",
     "Motion",
     "MotionError",
     "MujocoPlant",
@@ -77,6 +79,8 @@ __all__ = [
     "RunReport",
     "Samples",
     "Singularity",
+    "Stream",
+    "StreamJob",
     "TlsFiles",
     "TouchUp",
     "Zone",

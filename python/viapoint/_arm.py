@@ -11,16 +11,18 @@ from urllib.parse import parse_qs, urlsplit
 import numpy as np
 
 from . import _core, _session
-from ._arguments import ArrayLike, Vector, number, vector
+from ._arguments import ArrayLike, Vector, integer, number, vector
 from ._job import Execution, Job
 from ._motion import CYCLE, Motion
 from ._program import Program, motion_of
 from ._recording import Recording, record
 from ._robot import Robot, load_robot, require_robot, require_within_limits
+from ._stream import Stream
 from ._tls import TlsFiles
 from ._virtual import VirtualLoop
-from .errors import BadArgumentError, StoppedError
-from .frames import Frame
+from ._zone import ZoneLike
+from .errors import BadArgumentError, BusyError, StoppedError
+from .frames import Frame, Tool
 
 if TYPE_CHECKING:
     from ._points import PointList
@@ -69,6 +71,7 @@ class Arm:
         self._loop = loop
         self._cycle = cycle
         self._jobs: list[Job] = []
+        self._streams: list[Stream] = []
 
     def __repr__(self) -> str:
         """Robot and state."""
@@ -86,6 +89,8 @@ class Arm:
     ) -> None:
         """Wait for the run under way, or on an exception bring it to rest; then disconnect."""
         try:
+            for stream in self._streams:
+                stream.close(stop=kind is not None)
             for job in self._jobs:
                 job.finish(stop=kind is not None)
         finally:
@@ -143,6 +148,88 @@ class Arm:
                     ways_out=["Plan a new program from where the arm rests: start=arm.setpoint."],
                 )
         return job
+
+    def stream(
+        self,
+        *,
+        start: ArrayLike | None = None,
+        ahead: int = 16,
+        speed: float | None = None,
+        acceleration: float | None = None,
+        angular_speed: float | None = None,
+        angular_acceleration: float | None = None,
+        scale: float | None = None,
+        zone: ZoneLike = "fine",
+        name: str = "stream",
+        position_tolerance: float = _core.POSITION_TOLERANCE,
+        angle_tolerance: float = _core.ANGLE_TOLERANCE,
+        frame: Frame | ArrayLike | None = None,
+        tool: Tool | ArrayLike | None = None,
+    ) -> Stream:
+        """Run steps as they are told: for a script that decides as it goes.
+
+        >>> import viapoint as vp
+        >>> with vp.connect("sim://two_link") as arm, arm.stream(zone=vp.radius(0.02)) as stream:
+        ...     for angle in (0.2, 0.4, 0.2):
+        ...         _ = stream.movej([angle, 2 * angle])
+        >>> arm_was_late = stream.late_count > 0
+
+        Parameters
+        ----------
+        start : array_like, (n,), optional
+            Joints where the first step begins [rad or m]. Default: where the arm rests.
+        ahead : int
+            A step waits while the arm has so many before it, 3 to 1000. The arm goes on without a
+            rest where they are half a second of motion and more.
+        speed, acceleration, angular_speed, angular_acceleration, scale, zone, name, \
+        position_tolerance, angle_tolerance, frame, tool
+            As for `Program`.
+
+        Returns
+        -------
+        Stream
+            For a ``with`` block.
+
+        Raises
+        ------
+        BadArgumentError
+            By the argument's name; or the arm is one that no stream can run on.
+        BusyError
+            A run is under way.
+        """
+        loop = self._loop
+        if not isinstance(loop, (_core.ControllerLoop, VirtualLoop)):
+            raise BadArgumentError(
+                "The arm is driven by another process, which takes whole programs only.",
+                ways_out=["Run a program, or connect to an arm of this process."],
+            )
+        limit = integer(ahead, "ahead", 3, 1000)
+        if isinstance(loop, VirtualLoop):
+            loop.see_to_end()
+        if loop.busy:
+            raise BusyError("A run is under way.", ways_out=["Wait for its end."])
+        stream = Stream(
+            self.robot,
+            loop,
+            self._cycle,
+            limit,
+            {
+                "start": self.setpoint if start is None else start,
+                "speed": speed,
+                "acceleration": acceleration,
+                "angular_speed": angular_speed,
+                "angular_acceleration": angular_acceleration,
+                "scale": scale,
+                "zone": zone,
+                "name": name,
+                "position_tolerance": position_tolerance,
+                "angle_tolerance": angle_tolerance,
+                "frame": frame,
+                "tool": tool,
+            },
+        )
+        self._streams.append(stream)
+        return stream
 
     def jog(self, velocity: ArrayLike) -> None:
         """Turn the joints at `velocity` for as long as this is called again within 250 ms.
@@ -360,7 +447,8 @@ def connect(
     require_within_limits(arm_robot, joints, "start", ["Say where the arm stands: start=[…]."])
     speed, low, high = _guarded(arm_robot, tool_speed, workspace)
     if _session.current().virtual:
-        return Arm(arm_robot, VirtualLoop(arm_robot, joints, period), period)
+        virtual = VirtualLoop(arm_robot, joints, period, speed, low, high)
+        return Arm(arm_robot, virtual, period)
     loop = _core.ControllerLoop(
         arm_robot._core, joints, cycle=period, tool_speed=speed, box_min=low, box_max=high
     )

@@ -59,6 +59,8 @@ class RunReport:
         Cycles of the clock that overruns slept through: the run is later by so many.
     lost_records : int
         Cycles that found no room in the log.
+    rested_cycles : int
+        Cycles at rest that left no record: a rest leaves its first two.
     """
 
     cycles: int
@@ -72,6 +74,7 @@ class RunReport:
     wall_time: float
     missed_cycles: int
     lost_records: int
+    rested_cycles: int
 
 
 class Job:

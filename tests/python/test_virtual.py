@@ -155,4 +155,36 @@ def test_a_jog_beyond_the_velocity_limit_is_refused_as_on_an_arm(arm):
 def test_a_jog_in_virtual_time_needs_a_start_and_a_cycle(puma):
     for start, cycle in (([0.0] * 6, 0.0), ([np.nan] * 6, 0.002)):
         with pytest.raises(errors.BadArgumentError):
-            _core.VirtualJog(puma._core, start, cycle=cycle)
+            _core.VirtualLoop(
+                puma._core,
+                start,
+                cycle=cycle,
+                tool_speed=np.inf,
+                box_min=[-np.inf] * 3,
+                box_max=[np.inf] * 3,
+            )
+
+
+def test_the_guard_holds_an_arm_in_virtual_time(motion):
+    with vp.connect("sim://puma560", start=motion.start, tool_speed=0.05) as arm:
+        with pytest.raises(errors.DriveFaultError, match="tool was told to move too fast"):
+            arm.run(motion)
+        assert "on its path" in arm.fault
+        with pytest.raises(errors.DriveFaultError):
+            arm.jog([0.0] * 6)
+
+
+def test_a_jog_in_a_pause_says_what_keeps_it():
+    with vp.connect("sim://two_link") as arm:
+        job = arm.run(vp.Program(arm.robot, start=[0.0, 0.0]).movej([0.5, 0.5]), wait=False)
+        job.pause()
+        assert polled(lambda: job.state == "paused")
+        for _ in range(1000):
+            arm.jog([1.0, 0.0])
+            if arm.jog_block:
+                break
+        assert arm.jog_block == "joint 1 is at its position limit"
+        assert polled(lambda: not arm.jogging)
+        job.resume()
+        assert job.wait()
+        assert job.state == "finished"

@@ -107,6 +107,8 @@ double PathTimer::extend(const JointPath& certain, double not_before) {
     timing_ = time(first_, certain);
   } else {
     adopt_certain();
+    rest_piece_ = certain_first_;
+    rest_passed_ = certain_.length();
     const auto try_from = [&](std::size_t from) {
       const NumberedTiming later = time(from, certain);
       return join_timings(timing_, later, not_before,
@@ -122,12 +124,18 @@ double PathTimer::extend(const JointPath& certain, double not_before) {
       timing_ = std::move(join->timing);
     } else {
       leave = duration_of(timing_.pieces);
-      begin_after_rest();
+      begin_after_rest(rest_piece_, rest_passed_);
       timing_ = time(first_, certain);
       ++stops_;
     }
   }
-  for (; first_ < piece_of(timing_.number.front()) && !path_.empty(); ++first_) path_.pop_front();
+  for (; first_ < piece_of(timing_.number.front()) && !path_.empty(); ++first_) {
+    if (first_ >= rest_piece_) {
+      rest_passed_ -= path_.front().length;
+      rest_piece_ = first_ + 1;
+    }
+    path_.pop_front();
+  }
   certain_ = certain;
   certain_first_ = end;
   return leave;
@@ -183,13 +191,15 @@ void PathTimer::adopt_certain() {
   }
 }
 
-/// The arm rests at the end of what was certain: the path begins anew there.
-void PathTimer::begin_after_rest() {
-  double passed = certain_.length();
-  while (first_ < certain_first_) {
-    path_.pop_front();
-    ++first_;
-  }
+void PathTimer::begin_after_missing() {
+  begin_after_rest(rest_piece_, rest_passed_);
+  timing_ = time(first_, certain_);
+  ++stops_;
+}
+
+/// The arm rests where it has `passed` so much since the start of a piece: the path begins there.
+void PathTimer::begin_after_rest(std::size_t piece, double passed) {
+  for (; first_ < piece; ++first_) path_.pop_front();
   while (!path_.empty() && passed >= path_.front().length * (1.0 - 1e-12)) {
     passed -= path_.front().length;
     path_.pop_front();
@@ -212,16 +222,9 @@ std::size_t append_until(std::vector<TrajectoryPiece>& pieces,
   for (const TrajectoryPiece& whole : timing) {
     if (!(end > kSliver * whole.duration)) break;
     ++count;
-    pieces.push_back(whole);
     const double share = end / whole.duration;
     end -= whole.duration;
-    if (share >= 1.0 - kSliver) continue;
-    double power = 1.0;
-    for (double& coefficient : pieces.back().timing) {
-      coefficient *= power;
-      power *= share;
-    }
-    pieces.back().duration *= share;
+    pieces.push_back(share < 1.0 - kSliver ? whole.until(share * whole.duration) : whole);
   }
   return count;
 }

@@ -28,6 +28,9 @@ class PathTimer {
   /// @returns when timing() as it was is left for what it is now [s]; its end where no way from one
   ///          to the other was found, so that the arm rests there
   double extend(const JointPath& certain, double not_before);
+  /// The one before was not left in time, so that the arm rests at its end: times the way from
+  /// there. @pre extend() has been called twice or more
+  void begin_after_missing();
   /// From where the one before was left, to rest. Empty before the first extend().
   [[nodiscard]] const NumberedTiming& timing() const { return timing_; }
   /// What each piece of timing() allows the tool; empty where none limits it.
@@ -43,7 +46,7 @@ class PathTimer {
   [[nodiscard]] std::size_t window_start(std::size_t overlap) const;
   [[nodiscard]] bool holds(std::span<const TrajectoryPiece> pieces, std::size_t number) const;
   void adopt_certain();
-  void begin_after_rest();
+  void begin_after_rest(std::size_t piece, double passed);
 
   const RobotModel& robot_;
   std::deque<JointPiece> path_;    ///< what is still of use of it
@@ -51,6 +54,8 @@ class PathTimer {
   NumberedTiming timing_;          ///< numbers count parts of pieces, see path_timer.cpp
   JointPath certain_;              ///< at the end of timing_
   std::size_t certain_first_ = 0;  ///< how many pieces came before
+  std::size_t rest_piece_ = 0;     ///< that the timing before timing_ ends in
+  double rest_passed_ = 0.0;       ///< of it
   int stops_ = 0;
 };
 

@@ -75,11 +75,28 @@ class StreamPlanner::Line {
     rest_here();
   }
 
-  std::optional<MotionChunk> next(double not_before, bool at_once) {
+  std::optional<MotionChunk> next(double not_before, bool at_once, bool may_rest) {
     collect();
     if (ready_.empty()) return timer_ ? std::nullopt : at_last();
     if (std::holds_alternative<TrajectoryPiece>(ready_.front().what)) return rest();
-    return motion(not_before, at_once);
+    return motion(not_before, at_once, may_rest);
+  }
+
+  MotionChunk after_rest() {
+    // What the end of the chunk before has switched is switched.
+    outputs_.erase(outputs_.begin(), outputs_.begin() + static_cast<std::ptrdiff_t>(tail_outputs_));
+    output_times_.clear();
+    last_ = std::move(before_);
+    duration_ = duration_before_;
+    planning::PathTimer& timer = timer_ ? *timer_ : *over_;
+    timer.begin_after_missing();
+    ++stops_;
+    MotionChunk chunk;
+    chunk.begin = duration_;
+    followed_ = true;  // of the one that was missed nothing is run
+    finish(chunk, section_arm_, timer.timing().pieces, timer.tool());
+    chunk.last = handed_out_last_ = is_last();
+    return chunk;
   }
 
   [[nodiscard]] bool done() const { return ended_ && handed_out_last_; }
@@ -153,7 +170,7 @@ class StreamPlanner::Line {
   }
 
   /// All there is of the section under way, as far as one window goes, if that is enough.
-  std::optional<MotionChunk> motion(double not_before, bool at_once) {
+  std::optional<MotionChunk> motion(double not_before, bool at_once, bool may_rest) {
     auto& part = std::get<SectionPart>(ready_.front().what);
     const size_t left = part.path.pieces().size() - used_;
     const bool all = left <= kMostPieces;
@@ -161,7 +178,6 @@ class StreamPlanner::Line {
     const auto legs = std::count_if(part.corners.begin(), part.corners.end(),
                                     [](const auto& corner) { return !corner.merged_into; });
     if (all && !ends && legs < (at_once ? 1 : wanted_legs_)) return std::nullopt;
-    MotionChunk chunk;
     if (!timer_) {
       section_arm_ = ready_.front().arm;
       timer_.emplace(*section_arm_);
@@ -171,23 +187,27 @@ class StreamPlanner::Line {
     const size_t count = std::min(left, kMostPieces);
     JointPath window;
     std::for_each_n(from, count, [&](const JointPiece& piece) { window.append(piece); });
+    planning::PathTimer later = *timer_;
+    later.append(window);
+    const double leave = later.extend(all && !ends ? builder_->certain() : JointPath(), not_before);
+    if (!may_rest && later.stops() > timer_->stops()) return std::nullopt;
+    stops_ += later.stops() - timer_->stops();
+    timer_.emplace(std::move(later));
+
+    MotionChunk chunk;
     used_ += count;
-    timer_->append(window);
     chunk.corners = std::exchange(part.corners, {});
     if (all) {
       ready_.pop_front();
       used_ = 0;
     }
-    const int stops_before = timer_->stops();
-    const double leave =
-        timer_->extend(all && !ends ? builder_->certain() : JointPath(), not_before);
-    stops_ += timer_->stops() - stops_before;
     chunk.begin = section_begun_ ? leave : duration_;
     section_begun_ = true;
     wanted_legs_ = ends ? kFirstLegs : std::min(kMostLegs, 2 * wanted_legs_);
     finish(chunk, section_arm_, timer_->timing().pieces, timer_->tool());
     if (ends) {
       follow_process(duration_);
+      over_.emplace(std::move(*timer_));
       timer_.reset();
       chunk.corners.insert(chunk.corners.end(), tool_changes_.begin(), tool_changes_.end());
       tool_changes_.clear();
@@ -234,6 +254,7 @@ class StreamPlanner::Line {
     // At the very moment the next chunk changes it.
     while (passed < output_times_.size() && output_times_[passed] < leave) ++passed;
     outputs_.erase(outputs_.begin(), outputs_.begin() + static_cast<std::ptrdiff_t>(passed));
+    tail_outputs_ = output_times_.size() - passed;
     output_times_.clear();
   }
 
@@ -259,8 +280,8 @@ class StreamPlanner::Line {
     const double manipulability = planning::least_manipulability(arm, pieces);
     chunk.motion = Trajectory(std::move(pieces), arm.limits(), from);
     for (const size_t place : places) output_times_.push_back(chunk.motion.start_of(place));
-    duration_ = chunk.motion.duration();
-    last_ = chunk.motion.pieces();
+    duration_before_ = std::exchange(duration_, chunk.motion.duration());
+    before_ = std::exchange(last_, chunk.motion.pieces());
 
     Certificate& certificate = chunk.motion.certificate();
     certificate.manipulability = manipulability;
@@ -313,8 +334,11 @@ class StreamPlanner::Line {
       locate(problem);
       chunk.warnings.push_back(std::move(problem));
     }
-    chunk.last = ended_ && ready_.empty() && !timer_ && output_times_.size() == outputs_.size();
-    handed_out_last_ = chunk.last;
+    chunk.last = handed_out_last_ = is_last();
+  }
+
+  [[nodiscard]] bool is_last() const {
+    return ended_ && ready_.empty() && !timer_ && output_times_.size() == outputs_.size();
   }
 
   void locate(Problem& problem) const {
@@ -342,6 +366,7 @@ class StreamPlanner::Line {
   std::vector<CornerOutcome> tool_changes_;
 
   std::optional<planning::PathTimer> timer_;  ///< of the section under way
+  std::optional<planning::PathTimer> over_;   ///< of the one that ended with the last chunk
   RobotPtr section_arm_;
   bool section_begun_ = false;
   int wanted_legs_ = kFirstLegs;
@@ -356,6 +381,10 @@ class StreamPlanner::Line {
   bool followed_ = true;            ///< its process speeds have been looked at
   double time_ = 0.0;               ///< up to where they were [s from the first one's beginning]
   planning::ProcessProof process_;  ///< of all chunks up to there
+  // Of the chunk before, for when that one is run to its end.
+  double duration_before_ = 0.0;
+  size_t tail_outputs_ = 0;  ///< that it changes after it was to be left
+  std::vector<TrajectoryPiece> before_;
 };
 
 StreamPlanner::StreamPlanner(RobotPtr robot, const MotionProgram& program)
@@ -366,9 +395,10 @@ StreamPlanner& StreamPlanner::operator=(StreamPlanner&&) noexcept = default;
 
 void StreamPlanner::add(const Step& step) { line_->add(step); }
 void StreamPlanner::end() { line_->end(); }
-std::optional<MotionChunk> StreamPlanner::next(double not_before, bool at_once) {
-  return line_->next(not_before, at_once);
+std::optional<MotionChunk> StreamPlanner::next(double not_before, bool at_once, bool may_rest) {
+  return line_->next(not_before, at_once, may_rest);
 }
+MotionChunk StreamPlanner::after_rest() { return line_->after_rest(); }
 bool StreamPlanner::done() const { return line_->done(); }
 int StreamPlanner::stops() const { return line_->stops(); }
 

@@ -23,10 +23,14 @@ CycleRunner::CycleRunner(Drive& drive, Clock& clock, LoopChannels& channels,
 void CycleRunner::run() noexcept {
   due_ = clock_.now();
   while (!channels_.quit.load(std::memory_order_acquire)) {
-    wait_for_cycle();
-    do_cycle();
+    cycle();
     if (clock_.is_virtual()) let_others_run();
   }
+}
+
+void CycleRunner::cycle() noexcept {
+  wait_for_cycle();
+  do_cycle();
 }
 
 void CycleRunner::wait_for_cycle() noexcept {
@@ -49,6 +53,7 @@ void CycleRunner::do_cycle() noexcept VIAPOINT_NONBLOCKING {
   // Read first and acted on last: a jog comes with the pause that was wished before it.
   const bool is_jog = channels_.jog.read(wished_);
   if (motion_ != nullptr) take_wish();
+  if (motion_ != nullptr && motion_->open) take_link();
   if (is_jog) jog();
   hold_lease();
   interpolator_.set_override(channels_.override_share.load(std::memory_order_relaxed));
@@ -58,7 +63,7 @@ void CycleRunner::do_cycle() noexcept VIAPOINT_NONBLOCKING {
   const bool is_at_rest = guard();
   const std::int64_t end = clock_.now();
   const DriveStatus status = drive_.exchange(setpoint_, measurement_);
-  guard_.look_at(status, measurement_);
+  guard_.look_at(status, measurement_, late_cycles_);
   const bool is_dead = status == DriveStatus::kFault || status == DriveStatus::kPowerLost;
   const bool fault = is_dead || is_at_rest;
   if (fault) interpolator_.abandon();
@@ -71,7 +76,7 @@ void CycleRunner::do_cycle() noexcept VIAPOINT_NONBLOCKING {
     motion_->state.store(RunState::kStopping, std::memory_order_release);
   }
   if (fault) {
-    fail();
+    fail(status);
   } else if (motion_ != nullptr && !off_path_) {
     finish();
   }
@@ -92,8 +97,9 @@ bool CycleRunner::guard() noexcept VIAPOINT_NONBLOCKING {
   return std::exchange(is_resting_, true);
 }
 
-void CycleRunner::fail() noexcept VIAPOINT_NONBLOCKING {
+void CycleRunner::fail(DriveStatus status) noexcept VIAPOINT_NONBLOCKING {
   channels_.breach = guard_.breach();
+  channels_.last_status = status;
   channels_.faulted.store(true, std::memory_order_release);
   if (motion_ == nullptr) return;
   motion_->state.store(RunState::kFault, std::memory_order_release);
@@ -126,11 +132,23 @@ void CycleRunner::take_wish() noexcept VIAPOINT_NONBLOCKING {
   interpolator_.wish(wish.wish);
 }
 
+void CycleRunner::take_link() noexcept VIAPOINT_NONBLOCKING {
+  const MotionLink* link = motion_->link.load(std::memory_order_acquire);
+  if (link != nullptr && interpolator_.active()) {
+    const LinkFate fate = interpolator_.lengthen(*link);
+    if (fate == LinkFate::kNotYet) return;
+    motion_->fate.store(fate, std::memory_order_relaxed);
+    motion_->link.store(nullptr, std::memory_order_release);
+  } else if (motion_->closed.load(std::memory_order_acquire)) {
+    interpolator_.close();
+  }
+}
+
 void CycleRunner::begin_next() noexcept VIAPOINT_NONBLOCKING {
   motion_ = channels_.motions.pop();
   if (motion_ == nullptr) return;
   interpolator_.set_override(channels_.override_share.load(std::memory_order_relaxed));
-  interpolator_.begin(*motion_->trajectory);
+  interpolator_.begin(*motion_->trajectory, motion_->open);
   wish_ = {};
   cycle_of_run_ = 0;
   arriving_ = false;
@@ -162,6 +180,12 @@ void CycleRunner::record(std::int64_t compute) noexcept VIAPOINT_NONBLOCKING {
                                    std::memory_order_relaxed);
   }
   motion.nominal_time.store(record_.nominal_time, std::memory_order_relaxed);
+  if (motion.open) {
+    motion.settled_time.store(interpolator_.settled_time(), std::memory_order_relaxed);
+    if (record_.state == RunState::kWaiting) {
+      motion.waited_cycles.fetch_add(1, std::memory_order_relaxed);
+    }
+  }
   motion.move.store(record_.move, std::memory_order_relaxed);
 }
 

@@ -44,6 +44,7 @@ struct LoopChannels {
   std::atomic<bool> faulted{false};         ///< tick
   // Written by the tick before `faulted`, and never after it.
   Breach breach;
+  DriveStatus last_status = DriveStatus::kOk;
   CycleHistory<ControllerLoop::kFaultCycles> history;
   std::atomic<bool> released{false};  ///< tick: a category 1 stop has ended
 };
@@ -59,6 +60,8 @@ class CycleRunner {
 
   /// Until channels.quit.
   void run() noexcept;
+  /// Waits for the next cycle of the clock, and does its work.
+  void cycle() noexcept;
 
  private:
   void wait_for_cycle() noexcept;
@@ -68,13 +71,15 @@ class CycleRunner {
   void take_wish() noexcept VIAPOINT_NONBLOCKING;
   /// Brings to rest what moves on behalf of somebody who is not heard of any more.
   void hold_lease() noexcept VIAPOINT_NONBLOCKING;
+  /// Goes over to the longer motion that an open one has become, and to its end.
+  void take_link() noexcept VIAPOINT_NONBLOCKING;
   void begin_next() noexcept VIAPOINT_NONBLOCKING;
   /// Gives back a motion that was queued while the drive failed or was released.
   void refuse_next() noexcept VIAPOINT_NONBLOCKING;
   /// The guard's last word on the setpoint; true where the arm rests after a breach.
   [[nodiscard]] bool guard() noexcept VIAPOINT_NONBLOCKING;
   /// Ends everything: nothing is told the drive any more.
-  void fail() noexcept VIAPOINT_NONBLOCKING;
+  void fail(DriveStatus status) noexcept VIAPOINT_NONBLOCKING;
   void record(std::int64_t compute) noexcept VIAPOINT_NONBLOCKING;
   void finish() noexcept VIAPOINT_NONBLOCKING;
   void let_others_run() noexcept;

@@ -13,14 +13,15 @@ namespace {
 constexpr double kSlack = 1e-6;
 /// Position by which a motion may begin beside where the arm rests, as it is admitted [rad or m].
 constexpr double kStartTolerance = 2e-6;
-/// An encoder tells a step larger than its joint can make, and than its own noise [rad or m].
-constexpr double kEncoderNoise = 1e-3;
-constexpr double kEncoderSpeeds = 2.0;
 
 /// False for what is not a number, too.
 bool is_within(double value, double limit) noexcept {
   return std::abs(value) <= limit * (1.0 + kSlack);
 }
+
+/// An encoder tells a step larger than its joint can make, and than its own noise [rad or m].
+constexpr double kEncoderNoise = 1e-3;
+constexpr double kEncoderSpeeds = 2.0;
 
 }  // namespace
 
@@ -94,6 +95,24 @@ Breach Guard::judge(const Setpoint& next) const noexcept VIAPOINT_NONBLOCKING {
     const double allowed = cycle_ * cycle_ * cycle_ * j / 12.0 + kStartTolerance;
     if (!is_within(beside, allowed)) return {Kind::kDerivatives, i, beside, allowed};
   }
+  return judge_couplings(next);
+}
+
+Breach Guard::judge_couplings(const Setpoint& next) const noexcept VIAPOINT_NONBLOCKING {
+  for (int row = 0; row < limits_.couplings(); ++row) {
+    double value = 0.0, step = 0.0, weight = 1.0;
+    for (int i = 0; i < limits_.joints(); ++i) {
+      const double factor = limits_.coupling(row, i);
+      value += factor * next.q[i];
+      step += factor * (next.q[i] - q_[i]);
+      weight += std::abs(factor);
+    }
+    const double slack = weight * kStartTolerance, rounding = kSlack * slack;
+    const double least = limits_.coupling_lower[row], most = limits_.coupling_upper[row];
+    if (value > most + slack && step > rounding) return {Breach::Kind::kCoupling, row, value, most};
+    if (value < least - slack && step < -rounding)
+      return {Breach::Kind::kCoupling, row, value, least};
+  }
   return {};
 }
 
@@ -114,14 +133,15 @@ Breach Guard::judge_tool(const Setpoint& next) noexcept VIAPOINT_NONBLOCKING {
   return {Breach::Kind::kToolSpeed, -1, speed, options_.tool_speed};
 }
 
-void Guard::look_at(DriveStatus status,
-                    const Measurement& measurement) noexcept VIAPOINT_NONBLOCKING {
+void Guard::look_at(DriveStatus status, const Measurement& measurement,
+                    std::int64_t late_cycles) noexcept VIAPOINT_NONBLOCKING {
   using Kind = Breach::Kind;
   const auto note = [this](const Breach& breach) {
     if (!breach_.any()) breach_ = breach;
   };
   if (status == DriveStatus::kFault) return note({Kind::kDrive, -1, 0.0, 0.0});
   if (status == DriveStatus::kPowerLost) return note({Kind::kPowerLost, -1, 0.0, 0.0});
+  unseen_cycles_ += 1.0 + static_cast<double>(late_cycles);
   if (status == DriveStatus::kSilent) {
     if (++silent_ > options_.silent_cycles) {
       note({Kind::kSilent, -1, static_cast<double>(silent_),
@@ -130,7 +150,7 @@ void Guard::look_at(DriveStatus status,
     return;
   }
   const int joints = std::min(limits_.joints(), static_cast<int>(measurement.q.size()));
-  const double time = (1.0 + silent_) * cycle_;
+  const double time = unseen_cycles_ * cycle_;
   for (int i = 0; i < joints; ++i) {
     const double step = measurement.q[i] - measured_[i], v = limits_.velocity[i];
     const double most = kEncoderSpeeds * v * time + kEncoderNoise;
@@ -146,6 +166,7 @@ void Guard::look_at(DriveStatus status,
     }
   }
   silent_ = 0;
+  unseen_cycles_ = 0.0;
   measured_ = measurement.q;
 }
 
@@ -196,6 +217,9 @@ std::string text_of(const Breach& breach) {
       return "a setpoint is not a number, or not one for each joint";
     case Kind::kPosition:
       return joint + " was told to leave its position limits" + pair;
+    case Kind::kCoupling:
+      return "the joints were told to leave their coupled limit " +
+             std::to_string(breach.index + 1) + pair;
     case Kind::kVelocity:
       return joint + " was told to move too fast" + pair;
     case Kind::kAcceleration:

@@ -29,8 +29,13 @@ Interpolator::Interpolator(const JointLimits& limits, std::chrono::nanoseconds c
   shown_ = {0.0, 0.0, 0.0};
 }
 
-void Interpolator::begin(const Trajectory& motion) noexcept VIAPOINT_NONBLOCKING {
+void Interpolator::begin(const Trajectory& motion, bool open) noexcept VIAPOINT_NONBLOCKING {
   motion_ = &motion;
+  open_ = open;
+  waits_ = false;
+  may_go_back_ = true;
+  fresh_ = 0.0;
+  left_out_ = 0.0;
   wish_ = Wish::kRun;
   direction_ = Direction::kForward;
   off_path_ = false;
@@ -47,13 +52,47 @@ void Interpolator::begin(const Trajectory& motion) noexcept VIAPOINT_NONBLOCKING
   enter_piece(0);
 }
 
+LinkFate Interpolator::lengthen(const MotionLink& link) noexcept VIAPOINT_NONBLOCKING {
+  if (motion_ == nullptr) return LinkFate::kTooLate;
+  if (direction_ == Direction::kBackward || piece_ < link.dropped) return LinkFate::kNotYet;
+  if (!waits_ && governor_.settled_at(now_) > link.same_until) {
+    return now_.tau > link.same_until ? LinkFate::kTooLate : LinkFate::kNotYet;
+  }
+  if (waits_ && now_.tau > link.same_until) return LinkFate::kTooLate;
+  if (link.dropped > 0) {
+    const OutputEffect& passed = motion_->outputs_after(link.dropped - 1);
+    outputs_before_ = (outputs_before_ & ~passed.changed) | passed.on;
+  }
+  motion_ = link.motion;
+  may_go_back_ = link.begins_at_rest;
+  left_out_ += link.shift;
+  now_.tau -= link.shift;
+  anchor_ -= link.shift;
+  fresh_ -= link.shift;
+  farthest_piece_ -= link.dropped;
+  lookahead_.lengthen(*motion_, link.same_until, link.shift, link.dropped);
+  if (waits_) {
+    waits_ = false;
+    rest_at(now_.tau);
+    fresh_ = now_.tau;
+  }
+  enter_piece(motion_->piece_at(now_.tau));
+  return LinkFate::kTaken;
+}
+
+double Interpolator::settled_time() const noexcept VIAPOINT_NONBLOCKING {
+  if (motion_ == nullptr) return 0.0;
+  return left_out_ +
+         (direction_ == Direction::kForward ? governor_.settled_at(now_) : motion_->duration());
+}
+
 void Interpolator::set_override(double share) noexcept VIAPOINT_NONBLOCKING {
   override_ = std::clamp(share, 0.0, 1.0);
 }
 
 void Interpolator::wish(Wish wish) noexcept VIAPOINT_NONBLOCKING {
   if (is_stop() && wish != Wish::kRelease) return;
-  wish_ = wish;
+  wish_ = wish == Wish::kBackward && !may_go_back_ ? Wish::kPause : wish;
   step_move_ = kNoMove;
 }
 
@@ -103,7 +142,10 @@ RunState Interpolator::tick(Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKING {
     hold(setpoint);
     return run_state_;
   }
-  return off_path_ ? tick_return(setpoint) : tick_motion(setpoint);
+  if (off_path_) return tick_return(setpoint);
+  if (waits_ && !(wants_motion() && wish_ == Wish::kBackward)) return tick_waiting(setpoint);
+  waits_ = false;
+  return tick_motion(setpoint);
 }
 
 void Interpolator::hold(Setpoint& setpoint) const noexcept VIAPOINT_NONBLOCKING {
@@ -161,7 +203,7 @@ RunState Interpolator::tick_return(Setpoint& setpoint) noexcept VIAPOINT_NONBLOC
 RunState Interpolator::tick_motion(Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKING {
   turn_where_wanted();
   const bool untouched =
-      now_.tau == 0.0 && direction_ == Direction::kForward && !governor_.changing();
+      now_.tau == fresh_ && direction_ == Direction::kForward && !governor_.changing();
   if (untouched) {
     now_.rate = target();
     since_anchor_ = 0;
@@ -176,9 +218,27 @@ RunState Interpolator::tick_motion(Setpoint& setpoint) noexcept VIAPOINT_NONBLOC
   run_state_ = classify();
   if (run_state_ == RunState::kFinished || run_state_ == RunState::kStopped) {
     motion_ = nullptr;
+  } else if (run_state_ == RunState::kWaiting) {
+    waits_ = true;
+    rest_at(motion_->duration());
   } else {
     move_on();
   }
+  return run_state_;
+}
+
+/// At rest where the motion ends for now.
+RunState Interpolator::tick_waiting(Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKING {
+  shown_ = {motion_->duration(), 0.0, 0.0};
+  hold(setpoint);
+  if (is_stop()) {
+    run_state_ = RunState::kStopped;
+  } else if (!wants_motion()) {
+    run_state_ = RunState::kPaused;
+  } else {
+    run_state_ = open_ ? RunState::kWaiting : RunState::kFinished;
+  }
+  if (run_state_ == RunState::kStopped || run_state_ == RunState::kFinished) motion_ = nullptr;
   return run_state_;
 }
 
@@ -215,7 +275,7 @@ void Interpolator::describe(const Setpoint& setpoint,
 
 RunState Interpolator::classify() const noexcept {
   if (nominal(now_.tau) >= motion_->duration() && direction_ == Direction::kForward) {
-    return RunState::kFinished;
+    return open_ ? RunState::kWaiting : RunState::kFinished;
   }
   const bool at_rest = now_.rate == 0.0 && !governor_.changing();
   if (is_stop()) return at_rest ? RunState::kStopped : RunState::kStopping;

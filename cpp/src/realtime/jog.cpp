@@ -186,4 +186,17 @@ void Jog::tick(Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKING {
   if (rests && !(is_wished && is_any)) active_ = false;
 }
 
+std::string text_of(const JogBlock& block) {
+  const std::string index = std::to_string(block.index + 1);
+  switch (block.kind) {
+    case JogBlock::Kind::kNone:
+      break;
+    case JogBlock::Kind::kPositionLimit:
+      return "joint " + index + " is at its position limit";
+    case JogBlock::Kind::kCouplingLimit:
+      return "the arm has stopped before its coupled limit " + index;
+  }
+  return {};
+}
+
 }  // namespace viapoint

@@ -84,21 +84,39 @@ void Lookahead::begin(const Trajectory& trajectory,
                       Direction direction) noexcept VIAPOINT_NONBLOCKING {
   trajectory_ = &trajectory;
   direction_ = direction;
+  origin_ = 0.0;
   piece_ = 0;
   begun_ = false;
   first_ = 0;
   end_ = 0;
 }
 
+void Lookahead::lengthen(const Trajectory& trajectory, double same_until, double shift,
+                         std::size_t dropped) noexcept VIAPOINT_NONBLOCKING {
+  const std::int64_t changed = cell_of(same_until);
+  trajectory_ = &trajectory;
+  origin_ += shift;
+  piece_ -= std::min(dropped, piece_);
+  // A cell that is being computed may hold some of what is no more.
+  if (begun_ || changed < end_) look_from(std::min(end_, changed));
+}
+
+std::int64_t Lookahead::cell_of(double tau) const noexcept VIAPOINT_NONBLOCKING {
+  return static_cast<std::int64_t>(std::floor((tau + origin_) / width_));
+}
+
+void Lookahead::look_from(std::int64_t cell) noexcept VIAPOINT_NONBLOCKING {
+  end_ = cell;
+  begun_ = false;
+  const double t = static_cast<double>(cell) * width_ - origin_;
+  piece_ = index_of(
+      trajectory_->piece_at(direction_ == Direction::kForward ? t : trajectory_->duration() - t));
+}
+
 int Lookahead::advance(double tau, int cells, int pieces) noexcept VIAPOINT_NONBLOCKING {
-  first_ = std::max(first_, static_cast<std::int64_t>(std::floor(tau / width_)));
-  if (end_ < first_) {  // the motion has overtaken its future: give up what lies between
-    end_ = first_;
-    begun_ = false;
-    const double t = static_cast<double>(end_) * width_;
-    piece_ = index_of(
-        trajectory_->piece_at(direction_ == Direction::kForward ? t : trajectory_->duration() - t));
-  }
+  first_ = std::max(first_, cell_of(tau));
+  // Where the motion has overtaken its future, what lies between is given up.
+  if (end_ < first_) look_from(first_);
   int left = pieces;
   for (int i = 0; i < cells && end_ < first_ + kCells; ++i) {
     if (!begun_) begin_cell();
@@ -109,8 +127,8 @@ int Lookahead::advance(double tau, int cells, int pieces) noexcept VIAPOINT_NONB
 
 bool Lookahead::ranges(double from, double to,
                        DerivativeRanges& out) const noexcept VIAPOINT_NONBLOCKING {
-  const auto begin = static_cast<std::int64_t>(std::floor(from / width_));
-  const auto last = static_cast<std::int64_t>(std::floor(to / width_));
+  const std::int64_t begin = cell_of(from);
+  const std::int64_t last = cell_of(to);
   if (begin < first_ || last >= end_) return false;
   const DerivativeRanges& start = cells_[static_cast<std::size_t>(begin % kCells)];
   for (std::size_t p = 0; p < pairs_; ++p) {
@@ -151,8 +169,8 @@ void Lookahead::begin_cell() noexcept VIAPOINT_NONBLOCKING {
 }
 
 bool Lookahead::end_cell(int& pieces) noexcept VIAPOINT_NONBLOCKING {
-  const double from = static_cast<double>(end_) * width_;
-  const double to = static_cast<double>(end_ + 1) * width_;
+  const double from = static_cast<double>(end_) * width_ - origin_;
+  const double to = static_cast<double>(end_ + 1) * width_ - origin_;
   DerivativeRanges& cell = cells_[static_cast<std::size_t>(end_ % kCells)];
   const auto& all = trajectory_->pieces();
   for (; piece_ < all.size(); ++piece_) {

@@ -15,9 +15,35 @@ constexpr double kForever = 1e8;
 
 }  // namespace
 
-LoopJob::LoopJob(std::shared_ptr<const Trajectory> trajectory, std::size_t log_records)
-    : log_(log_records) {
+LoopJob::LoopJob(std::shared_ptr<const Trajectory> trajectory, const JointLimits& limits,
+                 std::size_t log_records, bool open)
+    : chain_(trajectory, limits), log_(log_records) {
   motion_.trajectory = std::move(trajectory);
+  motion_.open = open;
+}
+
+void LoopJob::lengthen(std::shared_ptr<const Trajectory> next, double leave) {
+  if (motion_.closed || !motion_.open) {
+    throw MotionError(ErrorCode::kBusy, "the run takes no more motion", {"begin another run"});
+  }
+  if (chain_.is_settled() || fate() != LinkFate::kNotYet) {
+    const MotionLink* link = chain_.lengthen(*next, leave, motion_.nominal_time);
+    motion_.link.store(link, std::memory_order_release);
+  } else {
+    throw MotionError(ErrorCode::kBusy, "the motion handed over before has not been taken up yet",
+                      {"wait until it is"});
+  }
+}
+
+LinkFate LoopJob::fate() {
+  LinkFate fate = LinkFate::kNotYet;
+  if (motion_.link.load(std::memory_order_acquire) == nullptr) {
+    fate = motion_.fate;
+  } else if (ended()) {
+    fate = LinkFate::kTooLate;
+  }
+  chain_.settle(fate);
+  return fate;
 }
 
 bool LoopJob::wait(double timeout) {

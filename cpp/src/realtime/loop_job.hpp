@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "realtime/motion_chain.hpp"
 #include "realtime/run_log.hpp"
 #include "viapoint/realtime/controller_loop.hpp"
 #include "viapoint/realtime/motion_queue.hpp"
@@ -16,10 +17,12 @@
 namespace viapoint {
 
 /// Outlives the loop it ran in. Threads: any.
-class LoopJob final : public Job {
+class LoopJob final : public OpenJob {
  public:
   /// @param log_records records to keep, > 0
-  LoopJob(std::shared_ptr<const Trajectory> trajectory, std::size_t log_records);
+  /// @param open whether the motion may get longer
+  LoopJob(std::shared_ptr<const Trajectory> trajectory, const JointLimits& limits,
+          std::size_t log_records, bool open);
 
   bool wait(double timeout) override;
   void pause() override { wish(Wish::kPause); }
@@ -31,12 +34,19 @@ class LoopJob final : public Job {
   }
   [[nodiscard]] RunState state() const override { return motion_.state; }
   [[nodiscard]] double nominal_time() const override { return motion_.nominal_time; }
-  [[nodiscard]] double duration() const override { return motion_.trajectory->duration(); }
+  [[nodiscard]] double duration() const override { return chain_.duration(); }
   [[nodiscard]] std::uint64_t overruns() const override { return motion_.overruns; }
   [[nodiscard]] int move() const override { return motion_.move; }
   [[nodiscard]] std::vector<LogRecord> log() const override;
   [[nodiscard]] std::vector<LogRecord> log(std::uint64_t from, std::size_t count) const override;
   [[nodiscard]] RunReport report() const override;
+  void lengthen(std::shared_ptr<const Trajectory> next, double leave) override;
+  [[nodiscard]] LinkFate fate() override;
+  void close() override { motion_.closed.store(true, std::memory_order_release); }
+  [[nodiscard]] double earliest_leave() const override {
+    return motion_.settled_time - chain_.last_start();
+  }
+  [[nodiscard]] std::uint64_t waited_cycles() const override { return motion_.waited_cycles; }
 
   /// What crosses the real-time boundary.
   [[nodiscard]] QueuedMotion* motion() { return &motion_; }
@@ -57,6 +67,7 @@ class LoopJob final : public Job {
   void wish(Wish wish);
 
   QueuedMotion motion_;
+  MotionChain chain_;
   mutable std::mutex mutex_;  ///< guards what follows
   std::condition_variable changed_;
   bool ended_ = false;

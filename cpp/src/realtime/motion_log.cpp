@@ -24,6 +24,8 @@ const char* to_string(RunState state) {
       return "jogging";
     case RunState::kReturning:
       return "returning";
+    case RunState::kWaiting:
+      return "waiting";
   }
   return "unknown";
 }

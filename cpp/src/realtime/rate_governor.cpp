@@ -96,6 +96,15 @@ RateState RateGovernor::advance(const RateState& now) noexcept VIAPOINT_NONBLOCK
   return next;
 }
 
+double RateGovernor::settled_at(const RateState& now) const noexcept VIAPOINT_NONBLOCKING {
+  RateState state = now;
+  for (int k = plan_.position; k < plan_.steps; ++k) {
+    const Step& step = plan_.step[static_cast<std::size_t>(k)];
+    state = state.after(step.cycles * cycle_, step.curvature);
+  }
+  return std::max(now.tau, state.tau);
+}
+
 void RateGovernor::improve(const RateState& now, double target,
                            const Lookahead& lookahead) noexcept VIAPOINT_NONBLOCKING {
   const double end = changing() ? plan_.end_rate : now.rate;

@@ -28,9 +28,10 @@ void RunLog::append(const LogRecord& record) {
 }
 
 bool RunLog::rests_on(const LogRecord& record) const {
-  if (records_.empty() || record.state != RunState::kPaused) return false;
+  if (record.state != RunState::kPaused && record.state != RunState::kWaiting) return false;
+  if (records_.empty()) return false;
   const LogRecord& last = records_.back();
-  return last.state == RunState::kPaused && last.outputs == record.outputs && last.q == record.q;
+  return last.state == record.state && last.outputs == record.outputs && last.q == record.q;
 }
 
 std::vector<LogRecord> RunLog::records() const { return {records_.begin(), records_.end()}; }

@@ -92,6 +92,7 @@ std::vector<LogRecord> simulate(const Trajectory& trajectory, const JointLimits&
 
   Interpolator interpolator(limits, cycle, trajectory.at(0.0).q);
   interpolator.begin(trajectory);
+  Guard guard(limits, cycle, {}, trajectory.at(0.0).q);
   const double seconds = std::chrono::duration<double>(cycle).count();
   if (trajectory.duration() / seconds > static_cast<double>(kMostCycles))
     refuse(trajectory.duration() / seconds);
@@ -108,6 +109,11 @@ std::vector<LogRecord> simulate(const Trajectory& trajectory, const JointLimits&
     LogRecord record;
     interpolator.tick(setpoint);
     interpolator.describe(setpoint, record);
+    if (guard.pass(setpoint) != Guard::Verdict::kPass) {
+      throw MotionError(ErrorCode::kInternal, "the guard stops the simulated run at " +
+                                                  number_text(now) +
+                                                  " s: " + text_of(guard.breach()));
+    }
     record.cycle = k;
     record.stamp = static_cast<std::int64_t>(k) * cycle.count();
     log.push_back(record);

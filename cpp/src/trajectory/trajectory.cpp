@@ -31,16 +31,12 @@ Trajectory::Trajectory(std::vector<TrajectoryPiece> pieces, const JointLimits& l
   const int joints = pieces_.front().joints;
   starts_.reserve(pieces_.size());
   outputs_.reserve(pieces_.size());
-  OutputEffect outputs;
   for (size_t i = 0; i < pieces_.size(); ++i) {
     if (const auto fault = find_fault(pieces_[i], joints)) {
       throw MotionError(ErrorCode::kBadArgument,
                         "piece " + std::to_string(i) + " of the trajectory " + *fault);
     }
-    starts_.push_back(duration_);
-    duration_ += pieces_[i].duration;
-    add(pieces_[i], outputs);
-    outputs_.push_back(outputs);
+    index(pieces_[i]);
   }
   if (limits.joints() != joints) {
     throw MotionError(ErrorCode::kBadArgument, "the trajectory has " + std::to_string(joints) +
@@ -48,6 +44,33 @@ Trajectory::Trajectory(std::vector<TrajectoryPiece> pieces, const JointLimits& l
                                                    std::to_string(limits.joints()));
   }
   certificate_ = certify(pieces_, limits, from);
+}
+
+void Trajectory::index(const TrajectoryPiece& piece) {
+  starts_.push_back(duration_);
+  duration_ += piece.duration;
+  OutputEffect outputs = outputs_.empty() ? OutputEffect{} : outputs_.back();
+  add(piece, outputs);
+  outputs_.push_back(outputs);
+}
+
+Trajectory Trajectory::continued(size_t dropped, double leave, const Trajectory& next) const {
+  // Shorter than this share of a piece, what is left of it is rounding.
+  constexpr double kSliver = 1e-12;
+  Trajectory whole;
+  whole.certificate_ = next.certificate_;
+  double left = leave - starts_[dropped];
+  for (size_t i = dropped; i < pieces_.size(); ++i) {
+    TrajectoryPiece piece = pieces_[i];
+    if (!(left > kSliver * piece.duration)) break;
+    const double share = left / piece.duration;
+    left -= piece.duration;
+    if (share < 1.0 - kSliver) piece = piece.until(share * piece.duration);
+    whole.pieces_.push_back(piece);
+  }
+  whole.pieces_.insert(whole.pieces_.end(), next.pieces_.begin(), next.pieces_.end());
+  for (const TrajectoryPiece& piece : whole.pieces_) whole.index(piece);
+  return whole;
 }
 
 size_t Trajectory::piece_at(double t) const {

@@ -24,6 +24,18 @@ Timing timing_at(const TrajectoryPiece& piece, double tau) noexcept {
 
 }  // namespace
 
+TrajectoryPiece TrajectoryPiece::until(double tau) const noexcept {
+  TrajectoryPiece part = *this;
+  const double share = tau / duration;
+  double power = 1.0;
+  for (double& coefficient : part.timing) {
+    coefficient *= power;
+    power *= share;
+  }
+  part.duration = tau;
+  return part;
+}
+
 JointState TrajectoryPiece::at(double tau) const noexcept {
   const auto [u, u1, u2, u3] = timing_at(*this, tau);
   JointState state;

@@ -256,6 +256,49 @@ TEST(Guard, HoldsPositionLimitsButLetsAJointComeIn) {
   EXPECT_EQ(setpoint.q[0], 1.2 - 1e-7) << "it stays where it rests";
 }
 
+TEST(Guard, HoldsCoupledLimitsButLetsTheJointsComeIn) {
+  JointLimits limits = even_limits(2, 2.0, 20.0, 200.0);
+  limits.coupling = CouplingMatrix::Ones(1, 2);
+  limits.coupling_lower = CouplingVector::Constant(1, -1.0);
+  limits.coupling_upper = CouplingVector::Constant(1, 1.0);
+  Setpoint setpoint;
+  for (JointVector* vector : {&setpoint.qd, &setpoint.qdd, &setpoint.qddd}) vector->setZero(2);
+  const auto told = [&](Guard& guard, double q0, double q1) {
+    setpoint.q = JointVector::Constant(2, q0);
+    setpoint.q[1] = q1;
+    return guard.pass(setpoint);
+  };
+  constexpr double kBeyond = 0.50001;  // each
+  Guard at_limit(limits, kCycle, {}, JointVector::Constant(2, kBeyond));
+  EXPECT_EQ(told(at_limit, kBeyond + 1e-6, kBeyond - 1e-6), Verdict::kPass) << "along the limit";
+  EXPECT_EQ(told(at_limit, kBeyond + 2e-6, kBeyond - 2e-6), Verdict::kPass);
+  EXPECT_EQ(told(at_limit, kBeyond + 2e-6, kBeyond - 1e-6), Verdict::kAtRest);
+  EXPECT_EQ(at_limit.breach().kind, Kind::kCoupling);
+  EXPECT_EQ(at_limit.breach().index, 0);
+  EXPECT_NE(text_of(at_limit.breach()).find("coupled limit 1"), std::string::npos);
+  Guard outside(limits, kCycle, {}, JointVector::Constant(2, -0.6));
+  EXPECT_EQ(told(outside, -0.6 + 1e-7, -0.6), Verdict::kPass);
+  EXPECT_EQ(told(outside, -0.6, -0.6), Verdict::kAtRest);
+  EXPECT_EQ(outside.breach().kind, Kind::kCoupling);
+}
+
+TEST(Guard, LetsAnArmMoveOnWhileTheLoopSleepsThroughCycles) {
+  const JointLimits limits = even_limits(1, 2.0, 20.0, 200.0);
+  const auto breach_after = [&](std::int64_t late_cycles, int silent, double step) {
+    Guard guard(limits, kCycle, {}, JointVector::Zero(1));
+    for (int k = 0; k < silent; ++k) {
+      guard.look_at(DriveStatus::kSilent, {JointVector::Zero(1), 0}, late_cycles);
+    }
+    guard.look_at(DriveStatus::kOk, {JointVector::Constant(1, step), 0}, late_cycles);
+    return guard.breach().kind;
+  };
+  const double at_limit = 2.0 * kSeconds;  // in a cycle
+  EXPECT_EQ(breach_after(0, 0, 10.0 * at_limit), Kind::kEncoder);
+  EXPECT_EQ(breach_after(9, 0, 10.0 * at_limit), Kind::kNone);
+  EXPECT_EQ(breach_after(4, 1, 10.0 * at_limit), Kind::kNone);
+  EXPECT_EQ(breach_after(9, 0, 25.0 * at_limit), Kind::kEncoder);
+}
+
 TEST(Guard, SeesADriveThatIsSilentJumpsLagsOrLosesItsPower) {
   const JointLimits limits = even_limits(2, 2.0, 20.0, 200.0);
   const JointVector start = JointVector::Zero(2);

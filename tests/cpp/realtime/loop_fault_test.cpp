@@ -19,7 +19,7 @@ const JointLimits kLimits = even_limits(2, 2.0, 20.0, 200.0);
 
 /// What the test does to a drive, and sees of it when the loop has gone.
 struct Bench {
-  enum class Trouble { kNone, kSilent, kJump, kPower };
+  enum class Trouble { kNone, kSilent, kJump, kPower, kJumpThenPower };
   std::atomic<Trouble> trouble{Trouble::kNone};
   std::atomic<int> released{0};
   std::atomic<std::uint64_t> exchanges{0};
@@ -40,6 +40,10 @@ class BenchDrive final : public Drive {
     if (trouble == Bench::Trouble::kPower) return DriveStatus::kPowerLost;
     const DriveStatus status = arm_.exchange(setpoint, measurement);
     if (trouble == Bench::Trouble::kJump) measurement.q[1] += 0.3;
+    if (trouble == Bench::Trouble::kJumpThenPower) {
+      if (jumped_ > 5) return DriveStatus::kPowerLost;
+      if (++jumped_ == 1) measurement.q[1] += 0.3;
+    }
     return status;
   }
   void release() noexcept override { ++bench_->released; }
@@ -47,6 +51,7 @@ class BenchDrive final : public Drive {
  private:
   std::shared_ptr<Bench> bench_;
   SimulatedDrive arm_;
+  int jumped_ = 0;
 };
 
 struct Cell {
@@ -122,6 +127,19 @@ TEST(LoopFault, APowerThatGoesIsReportedWithWhereTheArmWas) {
   const std::uint64_t exchanges = cell.bench->exchanges;
   std::this_thread::sleep_for(std::chrono::milliseconds(5));
   EXPECT_EQ(cell.bench->exchanges, exchanges) << "nothing more is told a drive without power";
+}
+
+TEST(LoopFault, APowerThatGoesDuringTheGuardsStopIsNotToldAsAStop) {
+  Cell cell;
+  const auto job = cell.loop->run(cell.trajectory);
+  while (job->nominal_time() < 0.5) std::this_thread::yield();
+  cell.bench->trouble = Bench::Trouble::kJumpThenPower;
+  const std::string fault = fault_of(job);
+  EXPECT_NE(fault.find("jump"), std::string::npos) << fault;
+  EXPECT_NE(fault.find("its power went"), std::string::npos) << fault;
+  EXPECT_NE(fault.find("measured last at"), std::string::npos) << fault;
+  EXPECT_EQ(fault.find("the arm stopped on"), std::string::npos) << fault;
+  EXPECT_FALSE(cell.bench->last_qd.isZero(0.0)) << "the power was to go before the stop was over";
 }
 
 TEST(LoopStop, OfCategoryOneReleasesTheDriveAtRestAndOnce) {

@@ -55,7 +55,14 @@ class StreamPlanner {
   /// @param not_before the chunk handed out last will not be left before this [s of its nominal
   ///        time]: where the arm has got to, and what handing over takes
   /// @param at_once a chunk of whatever is certain, however little is new
-  [[nodiscard]] std::optional<MotionChunk> next(double not_before = 0.0, bool at_once = false);
+  /// @param may_rest hands out a chunk that the arm has to rest before, too; otherwise it is tried
+  ///        again with what comes
+  [[nodiscard]] std::optional<MotionChunk> next(double not_before = 0.0, bool at_once = false,
+                                                bool may_rest = true);
+  /// Instead of the chunk handed out last, when it came too late: the arm rests at the end of the
+  /// one before, and this one goes on along the same way from there. Without corners and warnings,
+  /// which the other one has. @pre the chunk handed out last was to begin before that end
+  [[nodiscard]] MotionChunk after_rest();
   /// True when all has been handed out.
   [[nodiscard]] bool done() const;
   /// How often so far the arm had to rest where a longer view would have gone on.

@@ -14,6 +14,7 @@
 #include "viapoint/realtime/clock.hpp"
 #include "viapoint/realtime/drive.hpp"
 #include "viapoint/realtime/guard.hpp"
+#include "viapoint/realtime/motion_link.hpp"
 #include "viapoint/realtime/motion_log.hpp"
 #include "viapoint/trajectory/trajectory.hpp"
 
@@ -82,6 +83,31 @@ class Job {
   [[nodiscard]] virtual RunReport report() const = 0;
 };
 
+/// A motion under way that gets longer while it runs. Where nothing more has come the arm rests at
+/// the end of what there is (RunState::kWaiting). Job::duration() is that end, and nominal times go
+/// on from the stream's beginning.
+class OpenJob : public Job {
+ public:
+  /// Hands over what follows: `next` begins where the motion handed over before is left, at `leave`
+  /// [s of that one's own time], or where it rests at its end. The arm takes it up in the next
+  /// cycle, as long as it is not too late (fate()).
+  /// @throws MotionError(kBusy) while the fate of the one before is open, or after close(); what a
+  ///   certificate made anew of `next` and of the step to it does not keep; kBadArgument for a
+  ///   `leave` that is not within the motion
+  /// Threads: one at a time.
+  virtual void lengthen(std::shared_ptr<const Trajectory> next, double leave) = 0;
+  /// Of the last motion handed over. A run that has ended takes nothing any more: kTooLate.
+  /// Threads: the one that hands over.
+  [[nodiscard]] virtual LinkFate fate() = 0;
+  /// Nothing more comes: the run ends where it ends.
+  virtual void close() = 0;
+  /// Before this a motion handed over now would be too late, at the present speed [s of the time of
+  /// the motion handed over last]; it may be negative. Threads: the one that hands over.
+  [[nodiscard]] virtual double earliest_leave() const = 0;
+  /// How long the arm has waited for more, altogether [cycles].
+  [[nodiscard]] virtual std::uint64_t waited_cycles() const = 0;
+};
+
 /// Owns the drive, the interpolator and the thread. The thread runs while the arm is connected
 /// (holding position when idle). Destruction brings a run to rest on its path first.
 class ControllerLoop {
@@ -103,6 +129,8 @@ class ControllerLoop {
   /// @param last_word called when all is proven, and the run begins next; what it throws refuses it
   [[nodiscard]] std::shared_ptr<Job> run(std::shared_ptr<const Trajectory> trajectory,
                                          const std::function<void()>& last_word = {});
+  /// The same with a motion that gets longer while it runs, of which this is the beginning.
+  [[nodiscard]] std::shared_ptr<OpenJob> follow(std::shared_ptr<const Trajectory> first);
   /// Hold-to-run: joint velocities (n,) [rad/s or m/s] for the next 250 ms; calling again renews
   /// them, zero or silence brings the arm to rest within its limits. Joints stop at their position
   /// limits by themselves, the arm before its coupled limits. Refused: kBusy while a run is under

@@ -39,6 +39,7 @@ struct Breach {
     // Of the setpoint: the path is lost, each joint stops by itself.
     kNotFinite,
     kPosition,
+    kCoupling,
     kVelocity,
     kAcceleration,
     kJerk,
@@ -54,7 +55,7 @@ struct Breach {
     kPowerLost,
   };
   Kind kind = Kind::kNone;
-  int index = -1;  ///< joint, or axis of the box, from 0
+  int index = -1;  ///< joint, row of the coupling, or axis of the box, from 0
   double value = 0.0, limit = 0.0;
 
   [[nodiscard]] bool any() const noexcept { return kind != Kind::kNone; }
@@ -71,7 +72,7 @@ struct Breach {
 /// limits V, A, J changes by no more than hV, hA, hJ in q, q̇, q̈; and by the trapezoid's rule with
 /// its error term (Davis & Rabinowitz 1984, 2.1) its positions belong to its velocities:
 /// |Δq - h (q̇₀ + q̇₁)/2| <= h³J/12. So no polynomial is needed, and nothing of what made the
-/// setpoint. A joint outside its position limits may come in.
+/// setpoint. A joint outside its position limits may come in, and so may a coupled one.
 ///
 /// The first breach is kept. Where the path is lost the guard brings every joint to rest by the
 /// quickest law from the last setpoint that passed, and tells those setpoints in place of the
@@ -93,12 +94,17 @@ class Guard {
   /// Looks at the setpoint due now, and replaces it where it must not pass.
   Verdict pass(Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKING;
   /// Looks at what the drive answered to it.
-  void look_at(DriveStatus status, const Measurement& measurement) noexcept VIAPOINT_NONBLOCKING;
+  /// @param late_cycles cycles that the loop has slept through before this one: the arm had that
+  ///        much longer to move
+  void look_at(DriveStatus status, const Measurement& measurement,
+               std::int64_t late_cycles = 0) noexcept VIAPOINT_NONBLOCKING;
   /// The first breach.
   [[nodiscard]] const Breach& breach() const noexcept { return breach_; }
 
  private:
   [[nodiscard]] Breach judge(const Setpoint& setpoint) const noexcept VIAPOINT_NONBLOCKING;
+  [[nodiscard]] Breach judge_couplings(const Setpoint& setpoint) const noexcept
+      VIAPOINT_NONBLOCKING;
   [[nodiscard]] Breach judge_tool(const Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKING;
   void begin_stop() noexcept VIAPOINT_NONBLOCKING;
   bool tell_stop(Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKING;
@@ -111,6 +117,7 @@ class Guard {
   JointVector measured_;
   Eigen::Vector3d tool_ = Eigen::Vector3d::Zero();
   int silent_ = 0;
+  double unseen_cycles_ = 0.0;  ///< since the arm was measured last
   Breach breach_;
   bool off_path_ = false;
   std::uint64_t stopping_ = 0;  ///< cycles since the stop began

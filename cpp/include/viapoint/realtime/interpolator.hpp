@@ -11,6 +11,7 @@
 #include "viapoint/realtime/drive.hpp"
 #include "viapoint/realtime/jog.hpp"
 #include "viapoint/realtime/lookahead.hpp"
+#include "viapoint/realtime/motion_link.hpp"
 #include "viapoint/realtime/motion_log.hpp"
 #include "viapoint/realtime/path_return.hpp"
 #include "viapoint/realtime/rate_governor.hpp"
@@ -43,6 +44,9 @@ enum class Wish : std::uint8_t {
 /// A step ends with the move under way: exactly there and at rest where the path rests between the
 /// moves, and where it does not, at rest as soon after it as can be.
 ///
+/// An open motion may get longer while it runs (lengthen()). At its end the arm waits, at rest,
+/// until more comes or the motion is closed.
+///
 /// While paused the arm may be jogged away. To go on it first returns, in a straight line in joint
 /// space (PathReturn), to where it left the path.
 ///
@@ -56,8 +60,15 @@ class Interpolator {
                const JointVector& position);
 
   /// Takes a motion that begins where the arm rests, at rest (admit() has checked it). It must stay
-  /// alive until active() is false. @pre !active(), !jogging()
-  void begin(const Trajectory& motion) noexcept VIAPOINT_NONBLOCKING;
+  /// alive until active() is false, or until it has been lengthened. @pre !active(), !jogging()
+  void begin(const Trajectory& motion, bool open = false) noexcept VIAPOINT_NONBLOCKING;
+  /// Goes over to the longer motion, if the one under way is the same for as long as the rate is
+  /// decided for, and if the arm is neither on its way back nor behind the new beginning; what that
+  /// takes is to wait (kNotYet), or it is too late. @pre active() and open; the two motions and
+  /// their first two derivatives agree where they part, up to the certificate's slack
+  [[nodiscard]] LinkFate lengthen(const MotionLink& link) noexcept VIAPOINT_NONBLOCKING;
+  /// No more comes: the motion ends where it ends.
+  void close() noexcept VIAPOINT_NONBLOCKING { open_ = false; }
   /// Share of the planned speed, clamped to [0, 1]; 0 acts as a pause. Kept between motions.
   void set_override(double share) noexcept VIAPOINT_NONBLOCKING;
   /// A stop is final for its motion; each kStep is one step more.
@@ -91,9 +102,12 @@ class Interpolator {
 
   /// True from begin() until a tick has returned kFinished or kStopped.
   [[nodiscard]] bool active() const noexcept { return motion_ != nullptr; }
-  /// Of the last setpoint: nominal time [s], rate dτ/dt (negative backward), program step (-1
-  /// before the first motion).
-  [[nodiscard]] double nominal_time() const noexcept { return shown_.tau; }
+  /// Of the last setpoint: nominal time since begin() [s], rate dτ/dt (negative backward), program
+  /// step (-1 before the first motion).
+  [[nodiscard]] double nominal_time() const noexcept { return left_out_ + shown_.tau; }
+  /// Until when the rate is decided [s of nominal time since begin()]: lengthen() finds a motion
+  /// that parts before this not yet possible, or too late. 0 without a motion.
+  [[nodiscard]] double settled_time() const noexcept VIAPOINT_NONBLOCKING;
   [[nodiscard]] double rate() const noexcept { return shown_.rate; }
   [[nodiscard]] int move() const noexcept { return move_; }
   [[nodiscard]] RunState state() const noexcept { return run_state_; }
@@ -114,6 +128,7 @@ class Interpolator {
   RunState tick_jog(Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKING;
   RunState tick_return(Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKING;
   RunState tick_motion(Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKING;
+  RunState tick_waiting(Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKING;
   void turn_where_wanted() noexcept VIAPOINT_NONBLOCKING;
   void rest_at(double way) noexcept VIAPOINT_NONBLOCKING;
   void end_step(std::size_t piece) noexcept VIAPOINT_NONBLOCKING;
@@ -132,6 +147,11 @@ class Interpolator {
   Lookahead lookahead_;
   PathReturn return_;
   bool off_path_ = false;  ///< jogged away while paused, or on the way back
+  bool open_ = false;      ///< more may come
+  bool waits_ = false;     ///< at the end of an open motion
+  bool may_go_back_ = true;
+  double fresh_ = 0.0;     ///< τ at which the motion goes on from rest: any rate may begin there
+  double left_out_ = 0.0;  ///< nominal time of what was left out at the beginning [s]
   const Trajectory* motion_ = nullptr;
   std::size_t piece_ = 0;
   std::size_t farthest_piece_ = 0;

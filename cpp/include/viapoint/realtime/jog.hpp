@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 
 #include "viapoint/core/joint_limits.hpp"
 #include "viapoint/core/nonblocking.hpp"
@@ -22,6 +23,9 @@ struct JogBlock {
   Kind kind = Kind::kNone;
   int index = -1;  ///< joint, or row of the coupling
 };
+
+/// What keeps a jog from doing what is wished, for the operator; empty where nothing does.
+[[nodiscard]] std::string text_of(const JogBlock& block);
 
 /// Each joint on its own: the quickest law (AxisMove) to the wished velocity or, where a position
 /// limit lies that way, to rest at that limit with the wished velocity as its speed limit, so that

@@ -82,6 +82,11 @@ class Lookahead {
   /// third derivative change their sign. Real-time: safe.
   void begin(const Trajectory& trajectory,
              Direction direction = Direction::kForward) noexcept VIAPOINT_NONBLOCKING;
+  /// Goes on with a motion of which `shift` [s] and `dropped` pieces at the beginning have been
+  /// left out, and that is another from `same_until` [s of the one before] on. What is known of the
+  /// rest is kept. @pre the direction is forward. Real-time: safe.
+  void lengthen(const Trajectory& trajectory, double same_until, double shift,
+                std::size_t dropped) noexcept VIAPOINT_NONBLOCKING;
   /// Forgets what lies before τ [s] and computes at most `cells` new cells, looking at no more than
   /// `pieces` pieces: a cell that has more is gone on with by the next call, and unknown until
   /// then. Returns the number of pieces looked at. Real-time: safe.
@@ -98,6 +103,8 @@ class Lookahead {
  private:
   [[nodiscard]] std::size_t index_of(std::size_t piece) const noexcept VIAPOINT_NONBLOCKING;
   [[nodiscard]] double start_of(std::size_t piece) const noexcept VIAPOINT_NONBLOCKING;
+  [[nodiscard]] std::int64_t cell_of(double tau) const noexcept VIAPOINT_NONBLOCKING;
+  void look_from(std::int64_t cell) noexcept VIAPOINT_NONBLOCKING;
   void begin_cell() noexcept VIAPOINT_NONBLOCKING;
   [[nodiscard]] bool end_cell(int& pieces) noexcept VIAPOINT_NONBLOCKING;
   void add_piece(const TrajectoryPiece& piece, double from, double to,
@@ -110,6 +117,7 @@ class Lookahead {
   double width_;
   const Trajectory* trajectory_ = nullptr;
   Direction direction_ = Direction::kForward;
+  double origin_ = 0.0;                  ///< of the trajectory's time on that of the cells [s]
   std::size_t piece_ = 0;                ///< next to look at, counted along the way
   bool begun_ = false;                   ///< cell `end_` holds some of its pieces
   std::int64_t first_ = 0;               ///< first cell still held

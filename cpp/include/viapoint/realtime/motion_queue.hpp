@@ -24,15 +24,22 @@ static_assert(std::atomic<NumberedWish>::is_always_lock_free);
 /// One motion on its way through the loop, and what both sides of the boundary say about it while
 /// it runs. Owned by an ordinary thread until it has come back.
 struct QueuedMotion {
-  std::shared_ptr<const Trajectory> trajectory;  ///< constant; only ordinary threads copy it
+  std::shared_ptr<const Trajectory> trajectory;  ///< it begins with; only ordinary threads copy it
+  bool open = false;                             ///< it may get longer; constant
 
-  std::atomic<NumberedWish> wish{};                 ///< written by ordinary threads
+  std::atomic<NumberedWish> wish{};              ///< written by ordinary threads
+  std::atomic<const MotionLink*> link{nullptr};  ///< by them; emptied by the tick
+  std::atomic<bool> closed{false};               ///< by them: an open motion gets no longer
+
   std::atomic<RunState> state{RunState::kRunning};  ///< the rest is written by the tick
+  std::atomic<LinkFate> fate{LinkFate::kNotYet};    ///< of the last link, before `link` is empty
   std::atomic<double> nominal_time{0.0};
+  std::atomic<double> settled_time{0.0};
   std::atomic<std::int32_t> move{-1};
   std::atomic<std::uint64_t> overruns{0};
   std::atomic<std::uint64_t> missed_cycles{0};
   std::atomic<std::uint64_t> lost_records{0};
+  std::atomic<std::uint64_t> waited_cycles{0};
 };
 
 /// Bounded, lock-free, one producer and one consumer each way.

@@ -31,6 +31,11 @@ class Trajectory {
   Trajectory(std::vector<TrajectoryPiece> pieces, const JointLimits& limits,
              const std::optional<JointState>& from = std::nullopt);
 
+  /// This motion without its first `dropped` pieces, left at `leave` [s of this motion] for `next`.
+  /// Nothing is proven anew: its certificate is that of `next`.
+  /// @pre start_of(dropped) < leave; the states agree where the two meet, and the joints too
+  [[nodiscard]] Trajectory continued(size_t dropped, double leave, const Trajectory& next) const;
+
   [[nodiscard]] int joints() const { return pieces_.empty() ? 0 : pieces_.front().joints; }
   [[nodiscard]] double duration() const { return duration_; }
   [[nodiscard]] const std::vector<TrajectoryPiece>& pieces() const { return pieces_; }
@@ -59,6 +64,9 @@ class Trajectory {
   std::vector<double> starts_;
   std::vector<OutputEffect> outputs_;
   double duration_ = 0.0;
+  /// Notes when a piece begins and what it leaves of the outputs.
+  void index(const TrajectoryPiece& piece);
+
   Certificate certificate_;
 };
 

@@ -36,6 +36,8 @@ struct TrajectoryPiece {
   /// q and its derivatives by nominal time τ. Real-time: safe, O(n). Threads: any.
   /// @pre 0 <= tau <= duration: time is not clamped, the polynomials go on outside
   [[nodiscard]] JointState at(double tau) const noexcept;
+  /// The same motion, ended at `tau`. @pre 0 < tau <= duration
+  [[nodiscard]] TrajectoryPiece until(double tau) const noexcept;
 };
 
 static_assert(std::is_trivially_copyable_v<TrajectoryPiece>);

@@ -123,6 +123,27 @@ void plan_at_random() {
   std::printf("%d motions from state to state\n", planned);
 }
 
+/// Motions that are taken over to again and again while they run.
+void lengthen_at_random() {
+  int taken = 0;
+  for (unsigned seed = 0; seed < 200; ++seed) {
+    std::mt19937 random(seed);
+    const Motion motion = random_motion(random);
+    Interpolator interpolator(motion.limits, kCycle, motion.trajectory.at(0.0).q);
+    interpolator.begin(motion.trajectory, true);
+    MotionLink link;
+    link.motion = &motion.trajectory;
+    Setpoint setpoint;
+    for (int k = 0; interpolator.active(); ++k) {
+      command_at_random(random, interpolator, k);
+      link.same_until = interpolator.nominal_time() + 0.1;
+      if (k % 7 == 0) taken += interpolator.lengthen(link) == LinkFate::kTaken ? 1 : 0;
+      interpolator.tick(setpoint);
+    }
+  }
+  std::printf("%d motions taken over to\n", taken);
+}
+
 void run_the_loop() {
   for (unsigned seed = 0; seed < 20; ++seed) {
     std::mt19937 random(seed);
@@ -148,6 +169,7 @@ int main(int argc, char** argv) {
   }
   viapoint::tick_with_commands();
   viapoint::jog_at_random();
+  viapoint::lengthen_at_random();
   viapoint::plan_at_random();
   viapoint::run_the_loop();
   return 0;

@@ -1,0 +1,126 @@
+// A program that is run while it is told, on either loop.
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <utility>
+
+#include "run_handles.hpp"
+#include "viapoint/streaming/motion_stream.hpp"
+
+namespace viapoint::python {
+namespace {
+
+using Release = py::gil_scoped_release;
+
+/// One thread tells the steps while another hands motion over.
+class StreamHandle {
+ public:
+  template <typename Loop>
+  StreamHandle(const HandleOf<Loop>& loop, const RobotHandle& robot, const MotionProgram& program,
+               double margin)
+      : joints_(loop.joints),
+        stream_(
+            robot.robot, program,
+            [to = loop.open()](std::shared_ptr<const Trajectory> first) {
+              return to->follow(std::move(first));
+            },
+            margin) {}
+
+  /// Takes the steps of `program` from `kept` on, and drops them there.
+  void take(MotionProgram& program, size_t kept) {
+    if (kept > program.steps.size()) {
+      throw MotionError(ErrorCode::kBadArgument, std::to_string(kept) +
+                                                     " steps are to be kept of " +
+                                                     std::to_string(program.steps.size()));
+    }
+    const auto first = program.steps.begin() + static_cast<std::ptrdiff_t>(kept);
+    const std::vector<Step> steps(first, program.steps.end());
+    program.steps.erase(first, program.steps.end());
+    const Release release;
+    const std::lock_guard lock(mutex_);
+    for (const Step& step : steps) stream_.add(step);
+  }
+  void end() {
+    const Release release;
+    const std::lock_guard lock(mutex_);
+    stream_.end();
+  }
+  void hand_over() {
+    const Release release;
+    const std::lock_guard lock(mutex_);
+    stream_.hand_over();
+  }
+  [[nodiscard]] int steps_ahead() {
+    const Release release;
+    const std::lock_guard lock(mutex_);
+    return stream_.steps_ahead();
+  }
+  [[nodiscard]] std::optional<JobHandle> job() {
+    const Release release;
+    const std::lock_guard lock(mutex_);
+    if (stream_.job() == nullptr) return std::nullopt;
+    return JobHandle{stream_.job(), joints_};
+  }
+  [[nodiscard]] std::uint64_t late_count() {
+    const Release release;
+    const std::lock_guard lock(mutex_);
+    return stream_.late_count();
+  }
+  /// (step, file, line, cycles waited), the newest last.
+  [[nodiscard]] std::vector<std::tuple<int, std::string, int, std::uint64_t>> late() {
+    const Release release;
+    const std::lock_guard lock(mutex_);
+    std::vector<std::tuple<int, std::string, int, std::uint64_t>> steps;
+    for (const LateStep& late : stream_.late()) {
+      steps.emplace_back(late.step, late.source.file, late.source.line, late.waited_cycles);
+    }
+    return steps;
+  }
+  [[nodiscard]] std::vector<CornerOutcome> take_corners() {
+    const Release release;
+    const std::lock_guard lock(mutex_);
+    return stream_.take_corners();
+  }
+  [[nodiscard]] std::vector<Problem> take_warnings() {
+    const Release release;
+    const std::lock_guard lock(mutex_);
+    return stream_.take_warnings();
+  }
+
+ private:
+  int joints_;
+  std::mutex mutex_;
+  MotionStream stream_;
+};
+
+template <typename Loop>
+std::unique_ptr<StreamHandle> make_stream(const HandleOf<Loop>& loop, const RobotHandle& robot,
+                                          const MotionProgram& program, double margin) {
+  return std::make_unique<StreamHandle>(loop, robot, program, margin);
+}
+
+}  // namespace
+
+void bind_motion_stream(py::module_& m) {
+  py::class_<StreamHandle>(m, "MotionStream", "Runs a program while it is told. Threads: any.")
+      .def(py::init(&make_stream<ControllerLoop>), py::arg("loop"), py::arg("robot"),
+           py::arg("program"), py::kw_only(), py::arg("margin"))
+      .def(py::init(&make_stream<VirtualLoop>), py::arg("loop"), py::arg("robot"),
+           py::arg("program"), py::kw_only(), py::arg("margin"))
+      .def("take", &StreamHandle::take, py::arg("program"), py::arg("kept"),
+           "Take the steps of a program from the number kept on, and drop them there.")
+      .def("end", &StreamHandle::end, "No step follows.")
+      .def("hand_over", &StreamHandle::hand_over, "Hand over what is due.")
+      .def_property_readonly("steps_ahead", &StreamHandle::steps_ahead,
+                             "Steps told that the arm has not begun.")
+      .def_property_readonly("job", &StreamHandle::job, "The run, once it has begun.")
+      .def_property_readonly("late_count", &StreamHandle::late_count)
+      .def_property_readonly("late", &StreamHandle::late,
+                             "(step, file, line, cycles waited) of the newest late steps.")
+      .def("take_corners", &StreamHandle::take_corners, "Corners decided since the last call.")
+      .def("take_warnings", &StreamHandle::take_warnings, "Warnings met since the last call.");
+}
+
+}  // namespace viapoint::python

@@ -1,0 +1,58 @@
+#include "viapoint/realtime/virtual_loop.hpp"
+
+#include <utility>
+
+#include "realtime/run_desk.hpp"
+
+namespace viapoint {
+
+VirtualLoop::VirtualLoop(std::unique_ptr<Drive> drive, const JointLimits& limits,
+                         const LoopOptions& options)
+    : desk_(std::make_unique<RunDesk>(std::move(drive), limits, options,
+                                      std::make_unique<VirtualClock>())) {}
+VirtualLoop::~VirtualLoop() = default;
+VirtualLoop::VirtualLoop(VirtualLoop&&) noexcept = default;
+VirtualLoop& VirtualLoop::operator=(VirtualLoop&&) noexcept = default;
+
+int VirtualLoop::pass(int cycles) {
+  const std::shared_ptr<LoopJob> job = desk_->job();
+  const bool runs = busy();
+  int passed = 0;
+  while (passed < cycles || passed == 0) {
+    desk_->runner().cycle();
+    desk_->see_to();
+    ++passed;
+    if (desk_->jogs()) continue;
+    if (!runs || job->ended()) break;
+    const RunState state = job->state();
+    if (state == RunState::kPaused || state == RunState::kWaiting) break;
+  }
+  return passed;
+}
+
+std::shared_ptr<Job> VirtualLoop::run(std::shared_ptr<const Trajectory> trajectory) {
+  return desk_->run(std::move(trajectory), false);
+}
+
+std::shared_ptr<OpenJob> VirtualLoop::follow(std::shared_ptr<const Trajectory> first) {
+  return desk_->run(std::move(first), true);
+}
+
+void VirtualLoop::jog(const JointVector& velocity) { desk_->jog(velocity); }
+bool VirtualLoop::jogging() const { return desk_->jogs(); }
+std::string VirtualLoop::jog_block() const {
+  return text_of(desk_->channels().jog_block.load(std::memory_order_relaxed));
+}
+void VirtualLoop::set_override(double share) { desk_->set_override(share); }
+double VirtualLoop::override_share() const {
+  return desk_->channels().override_share.load(std::memory_order_relaxed);
+}
+Measurement VirtualLoop::measured() const { return desk_->channels().snapshot.read().measurement; }
+bool VirtualLoop::busy() const {
+  const auto job = desk_->job();
+  return job != nullptr && !job->ended();
+}
+JointVector VirtualLoop::position() const { return desk_->channels().snapshot.read().position; }
+std::string VirtualLoop::fault() const { return desk_->fault(); }
+
+}  // namespace viapoint

@@ -1,0 +1,126 @@
+#include "viapoint/streaming/motion_stream.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+namespace viapoint {
+namespace {
+
+/// With less motion than this before it, the arm is given what is certain, however little [s].
+constexpr double kEnough = 1.0;
+/// With less than this, it is to rest where no way is found to go on without [s].
+constexpr double kLittle = 0.25;
+
+bool is_over(const Job& job) {
+  const RunState state = job.state();
+  return state == RunState::kStopped || state == RunState::kFinished || state == RunState::kFault;
+}
+
+template <typename T>
+void move_all(std::vector<T>& from, std::vector<T>& to) {
+  to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
+}
+
+}  // namespace
+
+MotionStream::MotionStream(RobotPtr robot, const MotionProgram& beginning, Follow follow,
+                           double margin)
+    : planner_(std::move(robot), beginning),
+      follow_(std::move(follow)),
+      margin_(margin),
+      steps_(static_cast<int>(beginning.steps.size())) {
+  if (steps_ > 0) newest_ = beginning.steps.back().source;
+}
+
+void MotionStream::add(const Step& step) {
+  planner_.add(step);
+  left_then_ = time_left();
+  tried_ = Need::kNone;
+  ++steps_;
+  newest_ = step.source;
+  hand_over();
+}
+
+void MotionStream::end() {
+  planner_.end();
+  tried_ = Need::kNone;
+  hand_over();
+}
+
+void MotionStream::hand_over() {
+  for (;;) {
+    if (job_ != nullptr && is_over(*job_)) return;
+    if (is_offered_ && !is_decided()) return;
+    const double not_before = job_ == nullptr ? 0.0 : job_->earliest_leave() + margin_;
+    const double left = time_left();
+    const Need need = left < kLittle ? Need::kNow : left < kEnough ? Need::kSoon : Need::kLater;
+    if (tried_ >= need) return;  // and nothing has come since
+    const int stops = planner_.stops();
+    std::optional<MotionChunk> chunk =
+        planner_.next(std::max(0.0, not_before), need >= Need::kSoon, need == Need::kNow);
+    tried_ = chunk ? Need::kNone : need;
+    if (!chunk) {
+      if (job_ != nullptr && planner_.done()) job_->close();
+      return;
+    }
+    is_stop_ = planner_.stops() > stops;
+    if (job_ == nullptr) {
+      begin(std::move(*chunk));
+    } else {
+      offer(std::move(*chunk));
+    }
+  }
+}
+
+void MotionStream::begin(MotionChunk chunk) {
+  job_ = follow_(std::make_shared<const Trajectory>(std::move(chunk.motion)));
+  move_all(chunk.corners, corners_);
+  move_all(chunk.warnings, warnings_);
+}
+
+void MotionStream::offer(MotionChunk chunk) {
+  job_->lengthen(std::make_shared<const Trajectory>(std::move(chunk.motion)), chunk.begin);
+  is_offered_ = true;
+  blamed_ = {steps_ - 1, newest_, 0};
+  move_all(chunk.corners, corners_);
+  move_all(chunk.warnings, warnings_);
+}
+
+bool MotionStream::is_decided() {
+  const LinkFate fate = job_->fate();
+  if (fate == LinkFate::kNotYet) return false;
+  is_offered_ = false;
+  if (fate == LinkFate::kTooLate && !is_over(*job_)) {
+    is_stop_ = true;
+    offer(planner_.after_rest());
+    return is_decided();
+  }
+  note_late();
+  return true;
+}
+
+void MotionStream::note_late() {
+  const std::uint64_t waited = job_->waited_cycles() - waited_;
+  waited_ += waited;
+  const bool is_late = waited > 0 || (is_stop_ && left_then_ < kEnough);
+  if (!is_late || last_late_ == blamed_.step) return;
+  last_late_ = blamed_.step;
+  ++late_count_;
+  blamed_.waited_cycles = waited;
+  if (late_.size() == kLateKept) late_.erase(late_.begin());
+  late_.push_back(blamed_);
+}
+
+double MotionStream::time_left() const {
+  return job_ == nullptr ? 0.0 : job_->duration() - job_->nominal_time();
+}
+
+int MotionStream::steps_ahead() const {
+  return job_ == nullptr ? steps_ : steps_ - 1 - std::max(0, job_->move());
+}
+
+std::vector<CornerOutcome> MotionStream::take_corners() { return std::exchange(corners_, {}); }
+std::vector<Problem> MotionStream::take_warnings() { return std::exchange(warnings_, {}); }
+
+}  // namespace viapoint

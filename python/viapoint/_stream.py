@@ -1,0 +1,315 @@
+"""A program that is run while it is told."""
+
+from __future__ import annotations
+
+import functools
+import threading
+import time
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeAlias
+
+from . import _core
+from ._job import ENDED, Execution, Job
+from ._motion import Tools, tools_of
+from ._program import Program
+from ._report import Report
+from ._robot import Robot
+from ._run_log import RunLog
+from ._virtual import VirtualLoop
+from .errors import BadProgramError, BusyError, StoppedError
+
+if TYPE_CHECKING:
+    from ._chunks import Chunk
+    from ._motion import Motion
+
+_PERIOD = 0.02
+"""How often a stream looks whether more is due [s]."""
+_ROOM = 0.005
+"""How often a step that has to wait looks for room [s]."""
+_MARGIN = 0.05
+"""What planning and handing over may take of the motion under way [s]."""
+
+_Loop: TypeAlias = _core.ControllerLoop | VirtualLoop
+_Told = ParamSpec("_Told")
+
+
+@dataclass(frozen=True)
+class LateStep:
+    """A step that came when the arm had nothing else to do any more.
+
+    Attributes
+    ----------
+    step : int
+        Index of the step in the stream, from 0.
+    file : str
+        The script.
+    line : int
+        Its line, from 1.
+    waited : float
+        How long the arm waited at rest [s]; 0 where it only slowed down to rest.
+    """
+
+    step: int
+    file: str
+    line: int
+    waited: float
+
+
+class StreamJob(Job):
+    """The run of a stream: a `Job` whose motion gets longer. Threads: any.
+
+    Its `duration` is that of what has been handed to the arm, and its state ``"waiting"`` where the
+    arm rests at the end of that. It has no `motion`.
+    """
+
+    def __init__(self, execution: Execution, stream: Stream, period: float) -> None:
+        self._execution = execution
+        self._period = period
+        self._seen_to_end = False
+        self._stream = stream
+
+    def __repr__(self) -> str:
+        """Name, state and progress."""
+        return (
+            f"<StreamJob {self._stream.name!r}, {self.state}, "
+            f"{self.nominal_time:.3f} of {self.duration:.3f} s so far>"
+        )
+
+    @property
+    def log(self) -> RunLog:
+        """Every cycle so far; complete once the job has ended."""
+        stream = self._stream
+        core = self._execution.log()
+        return RunLog(
+            **core.columns(), robot=stream.robot, period=self._period, core=core, tools=stream.tools
+        )
+
+
+class Stream(Program):
+    """A program whose steps are run as they are told. Made by `Arm.stream`; use it in ``with``.
+
+    Every builder of `Program` plans its step and hands it to the arm; it raises what is wrong with
+    the step, and waits while the arm has `ahead` steps before it. A corner is rounded if the moves
+    it hangs on are there in time: the two that it joins, and the one after them. Otherwise the arm
+    rests on its path before the corner until they are, and `late` says for which step.
+
+    Leaving the block tells that no step follows, and waits for the end; an exception in it brings
+    the arm to rest on its path first. Threads: one tells steps, any may command the `job`.
+    """
+
+    _is_open = False
+    """True once steps are run as they are told."""
+
+    def __init__(
+        self, robot: Robot, loop: _Loop, period: float, ahead: int, told: dict[str, Any]
+    ) -> None:
+        super().__init__(robot, **told)
+        self._loop = loop
+        self._period = period
+        self._ahead = ahead
+        self._kept = len(self)
+        self._told = self._kept
+        self._tools: Tools = tools_of(self._core, robot)
+        is_virtual = isinstance(loop, VirtualLoop)
+        self._stream = _core.MotionStream(
+            loop.core if isinstance(loop, VirtualLoop) else loop,
+            robot._core,
+            self._core,
+            margin=2 * period if is_virtual else _MARGIN,
+        )
+        self._job: StreamJob | None = None
+        self._corners: list[_core.Corner] = []
+        self._warnings: list[_core.Problem] = []
+        self._trouble: BaseException | None = None
+        self._closed = threading.Event()
+        self._is_open = True
+        if isinstance(loop, VirtualLoop):
+            loop.feed = self._stream.hand_over
+        else:
+            threading.Thread(target=self._keep_on, name="viapoint-stream", daemon=True).start()
+
+    def __repr__(self) -> str:
+        """Name, robot and number of steps."""
+        return f"<Stream {self.name!r} for {self.robot.name}, {self._told} steps>"
+
+    def __enter__(self) -> Stream:
+        """Return the stream itself."""
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        """Wait for the end; on an exception, bring the arm to rest on its path."""
+        self.close(stop=kind is not None)
+
+    @property
+    def job(self) -> StreamJob | None:
+        """The run; None until the arm has begun to move."""
+        if self._job is None and (core := self._stream.job) is not None:
+            loop = self._loop
+            execution = loop.executed(core) if isinstance(loop, VirtualLoop) else core
+            self._job = StreamJob(execution, self, self._period)
+        return self._job
+
+    @property
+    def tools(self) -> Tools:
+        """From which step on the arm moves another tool, and the arm with that tool."""
+        return self._tools
+
+    @property
+    def steps_ahead(self) -> int:
+        """Steps told that the arm has not begun."""
+        return self._stream.steps_ahead
+
+    @property
+    def late(self) -> list[LateStep]:
+        """Steps that came late, the newest 1000 of them, in order."""
+        return [
+            LateStep(step, file, line, cycles * self._period)
+            for step, file, line, cycles in self._stream.late
+        ]
+
+    @property
+    def late_count(self) -> int:
+        """How many steps came late."""
+        return self._stream.late_count
+
+    def take_corners(self) -> list[_core.Corner]:
+        """Return what became of the zones decided since the last call."""
+        return self._stream.take_corners()
+
+    def take_warnings(self) -> Report:
+        """Return the warnings met since the last call."""
+        return Report(self._stream.take_warnings())
+
+    def close(self, *, stop: bool = False) -> None:
+        """Tell that no step follows, and wait for the end.
+
+        Parameters
+        ----------
+        stop : bool
+            Bring the arm to rest on its path at once.
+
+        Raises
+        ------
+        DriveFaultError
+            The drive failed.
+        MotionError
+            Why motion that was told could not be handed over.
+        """
+        if self._closed.is_set():
+            return
+        try:
+            if not stop:
+                self._stream.end()
+            if self.job is not None:
+                self.job.finish(stop=stop)
+        finally:
+            self._closed.set()
+            if isinstance(self._loop, VirtualLoop):
+                self._loop.feed = None
+        if self._trouble is not None and not stop:
+            raise self._trouble
+
+    def check(self) -> Report:
+        """Refuse: a stream is checked step by step as it is told."""
+        raise _no_program("checked")
+
+    def plan(self) -> Motion:
+        """Refuse: a stream is planned while it is told."""
+        raise _no_program("planned")
+
+    def chunks(self, moves: Iterable[object] = ()) -> Iterator[Chunk]:
+        """Refuse: a stream is handed to the arm in chunks by itself."""
+        raise _no_program("planned")
+
+    def _make_room(self) -> None:
+        """Wait until the arm has fewer steps before it than allowed."""
+        while True:
+            if self._trouble is not None:
+                raise self._trouble
+            if self._closed.is_set():
+                raise BusyError(
+                    "The stream has ended: no step can follow.", ways_out=["Begin another stream."]
+                )
+            core = self._stream.job
+            if core is not None and core.state in ENDED:
+                raise StoppedError(
+                    f"The run of the stream is over ({core.state}): no step can follow.",
+                    move=core.move,
+                    ways_out=["Begin another stream where the arm rests."],
+                )
+            if self._stream.steps_ahead < self._ahead:
+                return
+            if not isinstance(self._loop, VirtualLoop):
+                time.sleep(_ROOM)
+            elif self._loop.pass_cycles(_virtual_room(self._period)) == 1:
+                time.sleep(_ROOM)  # it rests in a pause: another thread may act
+
+    def _hand_on(self) -> None:
+        """Hand on what a builder has added."""
+        self._tools += tuple(
+            (self._told + step - self._kept, arm)
+            for step, arm in tools_of(self._core, self.robot)
+            if step >= self._kept
+        )
+        self._told += len(self) - self._kept
+        self._stream.take(self._core, self._kept)
+
+    def _keep_on(self) -> None:
+        """Hand over what is due, again and again, until the stream is closed."""
+        while not self._closed.wait(_PERIOD):
+            try:
+                self._stream.hand_over()
+            except BaseException as error:  # noqa: BLE001 -- raised where the script tells a step
+                self._trouble = error
+                if (job := self.job) is not None:
+                    job.stop()
+                return
+
+
+def _virtual_room(period: float) -> int:
+    """Cycles that pass in virtual time until a step looks for room again."""
+    return max(2, round(_ROOM / period))
+
+
+def _no_program(what: str) -> BadProgramError:
+    return BadProgramError(
+        f"A stream runs while it is told: it cannot be {what} as a whole.",
+        ways_out=["Write a viapoint.Program."],
+    )
+
+
+def _streamed(
+    builder: Callable[Concatenate[Program, _Told], Program],
+) -> Callable[Concatenate[Stream, _Told], Stream]:
+    @functools.wraps(builder)
+    def tell(self: Stream, *args: _Told.args, **options: _Told.kwargs) -> Stream:
+        if self._is_open:
+            self._make_room()
+        builder(self, *args, **options)
+        if self._is_open:
+            self._hand_on()
+        return self
+
+    return tell
+
+
+for _name in (
+    "movej",
+    "movel",
+    "movec",
+    "screw",
+    "spline",
+    "set_frame",
+    "set_tool",
+    "wait",
+    "set_do",
+    "timed",
+):
+    setattr(Stream, _name, _streamed(getattr(Program, _name)))

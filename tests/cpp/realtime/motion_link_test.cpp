@@ -1,0 +1,160 @@
+// Motions that get longer while they run: the path and the limits are kept, whatever is commanded.
+#include "viapoint/realtime/motion_link.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <chrono>
+#include <memory>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "problem_count.hpp"
+#include "realtime/motion_chain.hpp"
+#include "realtime/no_allocation_scope.hpp"
+#include "realtime/random_motion.hpp"
+#include "viapoint/core/error.hpp"
+#include "viapoint/realtime/guard.hpp"
+#include "viapoint/realtime/interpolator.hpp"
+
+namespace viapoint {
+namespace {
+
+constexpr std::chrono::nanoseconds kCycle{2'000'000};
+
+/// The motion from piece `first` on.
+Trajectory rest_of(const Motion& motion, std::size_t first) {
+  const auto& pieces = motion.trajectory.pieces();
+  return {{pieces.begin() + static_cast<std::ptrdiff_t>(first), pieces.end()},
+          motion.limits,
+          motion.trajectory.at(motion.trajectory.start_of(first))};
+}
+
+/// An arm on a motion that is handed over again and again from some piece on: it goes over to the
+/// same motion each time, so that where it has to be is known.
+struct Handover {
+  explicit Handover(unsigned seed)
+      : random(seed),
+        motion(random_motion(random)),
+        interpolator(motion.limits, kCycle, motion.trajectory.at(0.0).q),
+        guard(motion.limits, kCycle, {}, motion.trajectory.at(0.0).q),
+        chain(std::make_shared<Trajectory>(motion.trajectory), motion.limits) {
+    interpolator.begin(motion.trajectory, true);
+  }
+  [[nodiscard]] bool chance(double share) {
+    return std::uniform_real_distribution<double>(0.0, 1.0)(random) < share;
+  }
+  void command() {
+    if (!chance(0.04)) return;
+    if (chance(0.4)) {
+      return interpolator.set_override(std::uniform_real_distribution<double>(0.0, 1.0)(random));
+    }
+    constexpr std::array kWishes = {Wish::kRun, Wish::kRun, Wish::kPause, Wish::kStep,
+                                    Wish::kBackward};
+    interpolator.wish(kWishes[random() % kWishes.size()]);
+  }
+  /// A link that begins with a piece to come, if there is one.
+  void hand_over() {
+    const Trajectory& whole = motion.trajectory;
+    const std::size_t first = whole.piece_at(interpolator.nominal_time()) + 1 + random() % 3;
+    if (link != nullptr || first >= whole.pieces().size()) return;
+    const double leave = whole.start_of(first) - chain.last_start();
+    if (leave <= 0.0) return;
+    link = chain.lengthen(rest_of(motion, first), leave, interpolator.nominal_time());
+  }
+  void decide() {
+    if (link == nullptr) return;
+    const NoAllocationScope scope;
+    const LinkFate fate = interpolator.lengthen(*link);
+    allocations += scope.calls();
+    if (fate == LinkFate::kNotYet) return;
+    (fate == LinkFate::kTaken ? taken : missed) += 1;
+    chain.settle(fate);
+    link = nullptr;
+  }
+
+  std::mt19937 random;
+  Motion motion;
+  Interpolator interpolator;
+  Guard guard;
+  MotionChain chain;
+  const MotionLink* link = nullptr;
+  std::uint64_t allocations = 0;
+  int taken = 0, missed = 0;
+};
+
+TEST(MotionLink, KeepsThePathAndTheLimitsWhateverIsCommanded) {
+  int taken = 0, missed = 0, backward = 0;
+  for (unsigned seed = 0; seed < problems(400U); ++seed) {
+    SCOPED_TRACE(seed);
+    Handover run(seed);
+    Setpoint setpoint;
+    for (int k = 0; k < 1500 && run.interpolator.active(); ++k) {
+      if (k < 1000) {
+        run.command();
+      } else {
+        run.interpolator.set_override(1.0);
+        run.interpolator.wish(Wish::kRun);
+        run.interpolator.close();
+      }
+      if (run.chance(0.1)) run.hand_over();
+      run.decide();
+      run.interpolator.tick(setpoint);
+      backward += run.interpolator.rate() < 0.0 ? 1 : 0;
+      const JointVector q = run.motion.trajectory.at(run.interpolator.nominal_time()).q;
+      ASSERT_LE((q - setpoint.q).cwiseAbs().maxCoeff(), 1e-11) << "cycle " << k;
+      ASSERT_EQ(run.guard.pass(setpoint), Guard::Verdict::kPass) << text_of(run.guard.breach());
+    }
+    ASSERT_EQ(run.allocations, 0U);
+    taken += run.taken;
+    missed += run.missed;
+  }
+  EXPECT_GT(taken, 400);
+  EXPECT_GT(missed, 5);
+  EXPECT_GT(backward, 1000);
+}
+
+TEST(MotionLink, EndsAtRestAndWaitsForMore) {
+  Handover run(1);
+  Setpoint setpoint;
+  const Trajectory& whole = run.motion.trajectory;
+  while (run.interpolator.tick(setpoint) != RunState::kWaiting) {
+  }
+  EXPECT_EQ(setpoint.q, whole.at(whole.duration()).q);
+  for (int k = 0; k < 5; ++k) {
+    EXPECT_EQ(run.interpolator.tick(setpoint), RunState::kWaiting);
+    EXPECT_TRUE(setpoint.qd.isZero(0.0));
+  }
+  std::vector<TrajectoryPiece> pieces;
+  append_straight(pieces, setpoint.q, JointVector::Constant(setpoint.q.size(), 0.1),
+                  run.motion.limits, 7);
+  const MotionLink* link = run.chain.lengthen(Trajectory(pieces, run.motion.limits),
+                                              whole.duration(), run.interpolator.nominal_time());
+  ASSERT_EQ(run.interpolator.lengthen(*link), LinkFate::kTaken);
+  run.chain.settle(LinkFate::kTaken);
+  run.interpolator.close();
+  Guard guard(run.motion.limits, kCycle, {}, setpoint.q);
+  const JointVector goal = setpoint.q.array() + 0.1;
+  while (run.interpolator.tick(setpoint) == RunState::kRunning) {
+    ASSERT_EQ(guard.pass(setpoint), Guard::Verdict::kPass);
+  }
+  EXPECT_EQ(run.interpolator.state(), RunState::kFinished);
+  EXPECT_EQ(run.interpolator.move(), 7);
+  EXPECT_TRUE(setpoint.q.isApprox(goal, 1e-12));
+}
+
+TEST(MotionLink, IsRefusedWhereItsProofDoesNotHold) {
+  Handover run(3);
+  std::vector<TrajectoryPiece> pieces;
+  const JointVector away = run.motion.trajectory.at(0.0).q.array() + 0.3;
+  append_straight(pieces, away, JointVector::Constant(away.size(), 0.1), run.motion.limits, 0);
+  const Trajectory elsewhere(pieces, run.motion.limits);
+  EXPECT_THROW(run.chain.lengthen(elsewhere, run.motion.trajectory.duration(), 0.0), MotionError);
+  EXPECT_THROW(run.chain.lengthen(elsewhere, -1.0, 0.0), MotionError);
+  EXPECT_THROW(run.chain.lengthen(elsewhere, 1e6, 0.0), MotionError);
+  EXPECT_TRUE(run.chain.is_settled());
+}
+
+}  // namespace
+}  // namespace viapoint
