@@ -6,6 +6,7 @@ moves to a hundred thousand), ``insertion`` (tool curves as joints, every
 proof checked), ``kinematics`` (inverse kinematics), ``tracking`` (tool lines followed pose by
 pose), all in C++ by viapoint-bench; ``sample`` (states of a motion into numpy arrays) and
 ``programs`` (random programs planned and proven) in Python;
+``realtime`` (wake-ups of the loop beside cyclictest, idle and under stress-ng);
 ``remote`` (a controller in a process of its own: calls, heartbeat, latency while clients
 misbehave); ``profiles`` (state to state) beside Ruckig, ``paths`` (timing along paths, corners)
 beside toppra, copp and justblend. Each has its place in tools/benches.
@@ -24,6 +25,7 @@ from benches import (
     paths,
     profiles,
     programs,
+    realtime,
     remote,
     sampling,
     soundness,
@@ -32,7 +34,7 @@ from benches import (
 from benches.machine import ROOT, machine
 from benches.tables import Row
 
-SUBJECTS = (*core.SUBJECTS, "sample", "programs", "remote", "profiles", "paths")
+SUBJECTS = (*core.SUBJECTS, "sample", "programs", "realtime", "remote", "profiles", "paths")
 BY_THE_MILLION = ("profiles", "programs")
 PROGRAMS = 60
 
@@ -54,6 +56,8 @@ def measure(subject: str, options: argparse.Namespace) -> tuple[list[Row], list[
         return sampling.measure(quick=options.quick), []
     if subject == "paths":
         return paths.measure(options.program.parent, quick=options.quick), []
+    if subject == "realtime":
+        return realtime.measure(quick=options.quick), []
     if subject == "remote":
         return remote.measure(quick=options.quick), []
     if subject == "programs":

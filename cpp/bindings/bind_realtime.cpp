@@ -36,10 +36,11 @@ HandleOf<Loop> make_loop(const RobotHandle& robot, const Vector& start, double c
   LoopOptions options;
   options.cycle = std::chrono::nanoseconds(std::llround(cycle * 1e9));
   options.guard = guard_of(robot, speed, low, high);
+  auto inputs = std::make_shared<std::atomic<std::uint64_t>>(0);
   const Release release;
-  return {
-      std::make_shared<Loop>(std::make_unique<SimulatedDrive>(q), robot.robot->limits(), options),
-      joints};
+  return {std::make_shared<Loop>(std::make_unique<SimulatedDrive>(q, inputs), robot.robot->limits(),
+                                 options),
+          joints, inputs};
 }
 
 /// What both loops have.
@@ -66,6 +67,15 @@ py::class_<HandleOf<Loop>> bind_loop(py::module_& m, const char* name, const cha
             open->jog(wished);
           },
           py::arg("velocity"), "Joint velocities for the next 250 ms.")
+      .def_property_readonly("inputs", [](const Handle& l) { return l.open()->measured().inputs; })
+      .def(
+          "set_inputs",
+          [](const Handle& l, std::uint64_t changed, std::uint64_t on) {
+            std::uint64_t present = l.inputs->load();
+            while (!l.inputs->compare_exchange_weak(present, (present & ~changed) | on)) {
+            }
+          },
+          py::arg("changed"), py::arg("on"), "Switch inputs of the simulated drive, bit by bit.")
       .def_property_readonly("jogging", [](const Handle& l) { return l.open()->jogging(); })
       .def_property_readonly("jog_block", [](const Handle& l) { return l.open()->jog_block(); })
       .def_property(

@@ -141,6 +141,14 @@ void bind_log(py::module_& m) {
           "Writes the same table as viapoint-controller --log.");
 }
 
+Wish wish_of(const std::string& action) {
+  if (action == "pause") return Wish::kPause;
+  if (action == "resume") return Wish::kRun;
+  if (action == "stop") return Wish::kStop;
+  throw MotionError(ErrorCode::kBadArgument, "\"" + action + "\" is nothing that an input can do.",
+                    {"Use \"pause\", \"resume\" or \"stop\"."});
+}
+
 void bind_job(py::module_& m) {
   py::class_<RunReport>(m, "RunReport", "Figures of one run; times in seconds.")
       .def_readonly("cycles", &RunReport::cycles)
@@ -177,6 +185,12 @@ void bind_job(py::module_& m) {
             j.job->stop(category == 1 ? StopCategory::kRelease : StopCategory::kHold);
           },
           py::arg("category"), py::call_guard<Release>())
+      .def(
+          "on_input",
+          [](const JobHandle& j, int input, bool value, const std::string& action) {
+            j.job->on_input({static_cast<std::int16_t>(input), value, wish_of(action)});
+          },
+          py::arg("input"), py::arg("value"), py::arg("action"))
       .def_property_readonly(
           "state", [](const JobHandle& j) { return std::string(to_string(j.job->state())); })
       .def_property_readonly("nominal_time",

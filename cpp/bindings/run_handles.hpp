@@ -2,6 +2,8 @@
 /// What Python holds of loops, runs and logs.
 #pragma once
 
+#include <atomic>
+#include <cstdint>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -18,6 +20,7 @@ template <typename Loop>
 struct HandleOf {
   std::shared_ptr<Loop> loop;
   int joints = 0;
+  std::shared_ptr<std::atomic<std::uint64_t>> inputs;  ///< of the simulated drive
 
   [[nodiscard]] std::shared_ptr<Loop> open() const {
     if (loop == nullptr) {

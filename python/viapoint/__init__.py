@@ -16,8 +16,9 @@ SI units and radians everywhere; poses are ``pose_base_tool``, (4, 4). Every err
 """
 
 from . import cells, errors, frames, iso9283, profile
-from ._arm import Arm, connect
+from ._arm import Arm
 from ._chunks import Chunk
+from ._connect import connect
 from ._core import (
     Certificate,
     Configuration,

@@ -5,14 +5,15 @@ from __future__ import annotations
 import contextlib
 import math
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Literal, Protocol
 
 from . import _core, _session
-from ._arguments import number
+from ._arguments import choice, integer, number
 from ._motion import CYCLE, Motion
 from ._run_log import RunLog
 from .errors import BadArgumentError, DriveFaultError, NotInControlError
 
+INPUTS = 64
 ENDED = ("finished", "stopped", "fault")
 _SLICE = 0.05
 """So long [s] a wait stays in C++ before Python looks after its signals."""
@@ -224,6 +225,43 @@ class Job:
                 ways_out=["Category 0 is the drive's own emergency stop."],
             )
         self._execution.stop(category)
+
+    def on_input(
+        self,
+        index: int,
+        value: bool = True,
+        action: Literal["pause", "resume", "stop"] = "pause",
+    ) -> None:
+        """Have the loop itself act on a digital input, in the cycle after the drive reports it.
+
+        It acts once, also on an input that is so already. The last call for each action counts; a
+        paused run keeps the rest of its path, and goes on by `resume` or by another input.
+
+        Parameters
+        ----------
+        index : int
+            Input, 0 to 63.
+        value : bool
+            When it is on, or when it is off.
+        action : {"pause", "resume", "stop"}
+            What to do.
+
+        Raises
+        ------
+        BadArgumentError
+            Another input or action, or an arm that is driven by another process.
+        """
+        number = integer(index, "index", 0, INPUTS - 1)
+        if not isinstance(value, bool):
+            raise BadArgumentError(f"value is {value!r}; an input is True or False.")
+        wished = choice(action, "action", ("pause", "resume", "stop"))
+        act = getattr(self._execution, "on_input", None)
+        if act is None:
+            raise BadArgumentError(
+                "The arm is driven by another process, where no run acts on inputs.",
+                ways_out=["Connect to an arm of this process."],
+            )
+        act(number, value, wished)
 
     @property
     def log(self) -> RunLog:

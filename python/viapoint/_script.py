@@ -50,7 +50,7 @@ def execute(
 
 
 def _execute_program(path: Path, robot: Robot | None) -> None:
-    from ._arm import connect
+    from ._connect import connect
 
     program = Program.load(path, robot)
     arm_robot = program.robot

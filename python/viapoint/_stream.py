@@ -8,12 +8,12 @@ import time
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeAlias
+from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeAlias, cast
 
 from . import _core
 from ._job import ENDED, Execution, Job
-from ._motion import Tools, tools_of
 from ._program import Program
+from ._proven import Tools, tools_of
 from ._report import Report
 from ._robot import Robot
 from ._run_log import RunLog
@@ -117,7 +117,7 @@ class Stream(Program):
             loop.core if isinstance(loop, VirtualLoop) else loop,
             robot._core,
             self._core,
-            margin=2 * period if is_virtual else _MARGIN,
+            margin=5 * period if is_virtual else _MARGIN,
         )
         self._job: StreamJob | None = None
         self._corners: list[_core.Corner] = []
@@ -297,7 +297,7 @@ def _streamed(
             self._hand_on()
         return self
 
-    return tell
+    return cast("Callable[Concatenate[Stream, _Told], Stream]", tell)
 
 
 for _name in (

@@ -6,6 +6,8 @@ import math
 import time
 from collections.abc import Callable
 
+import numpy as np
+
 from . import _core
 from ._arguments import Vector
 from ._job import ENDED, RunReport
@@ -93,6 +95,10 @@ class VirtualExecution:
         """Come to rest on the path and end."""
         self._job.stop(category)
 
+    def on_input(self, index: int, value: bool, action: str) -> None:
+        """Act on an input, in the cycle after it is so."""
+        self._job.on_input(index, value, action)
+
     def log(self) -> _core.Log:
         """Return every cycle so far."""
         return self._job.log()
@@ -134,12 +140,13 @@ class VirtualLoop:
         robot: Robot,
         start: Vector,
         cycle: float,
-        tool_speed: float,
-        box_min: Vector,
-        box_max: Vector,
+        tool_speed: float = math.inf,
+        workspace: tuple[Vector, Vector] | None = None,
     ) -> None:
+        beyond = np.full(3, math.inf)
+        low, high = (-beyond, beyond) if workspace is None else workspace
         self.core = _core.VirtualLoop(
-            robot._core, start, cycle=cycle, tool_speed=tool_speed, box_min=box_min, box_max=box_max
+            robot._core, start, cycle=cycle, tool_speed=tool_speed, box_min=low, box_max=high
         )
         self.cycle = cycle
         self.feed: Callable[[], None] | None = None
@@ -197,6 +204,16 @@ class VirtualLoop:
         """Joints after a while has passed, (n,)."""
         self._look()
         return self.core.position
+
+    @property
+    def inputs(self) -> int:
+        """Digital inputs after a while has passed, bit i for input i."""
+        self._look()
+        return self.core.inputs
+
+    def set_inputs(self, changed: int, on: int) -> None:
+        """Switch inputs."""
+        self.core.set_inputs(changed, on)
 
     @property
     def measured(self) -> Vector:

@@ -52,7 +52,10 @@ void CycleRunner::do_cycle() noexcept VIAPOINT_NONBLOCKING {
   if (motion_ == nullptr && !interpolator_.jogging() && is_sound) begin_next();
   // Read first and acted on last: a jog comes with the pause that was wished before it.
   const bool is_jog = channels_.jog.read(wished_);
-  if (motion_ != nullptr) take_wish();
+  if (motion_ != nullptr) {
+    take_wish();
+    take_inputs();
+  }
   if (motion_ != nullptr && motion_->open) take_link();
   if (is_jog) jog();
   hold_lease();
@@ -123,6 +126,16 @@ void CycleRunner::hold_lease() noexcept VIAPOINT_NONBLOCKING {
   if (woke_ < alive_until_) return;
   if (interpolator_.active()) interpolator_.wish(Wish::kPause);
   if (interpolator_.jogging()) interpolator_.stop_jog();
+}
+
+void CycleRunner::take_inputs() noexcept VIAPOINT_NONBLOCKING {
+  for (std::atomic<InputReaction>& place : motion_->reactions) {
+    InputReaction reaction = place.load(std::memory_order_acquire);
+    if (!reaction.is_met_by(measurement_.inputs)) continue;
+    interpolator_.wish(reaction.wish);
+    // One that has been put in its place meanwhile stays.
+    place.compare_exchange_strong(reaction, InputReaction{});
+  }
 }
 
 void CycleRunner::take_wish() noexcept VIAPOINT_NONBLOCKING {

@@ -69,6 +69,8 @@ class CycleRunner {
   /// Acts on a wish to jog, and says what came of it.
   void jog() noexcept VIAPOINT_NONBLOCKING;
   void take_wish() noexcept VIAPOINT_NONBLOCKING;
+  /// Does what the motion is to do about the inputs that were measured last.
+  void take_inputs() noexcept VIAPOINT_NONBLOCKING;
   /// Brings to rest what moves on behalf of somebody who is not heard of any more.
   void hold_lease() noexcept VIAPOINT_NONBLOCKING;
   /// Goes over to the longer motion that an open one has become, and to its end.

@@ -1,8 +1,10 @@
 #include "realtime/loop_job.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
+#include <string>
 #include <utility>
 
 #include "viapoint/core/error.hpp"
@@ -78,6 +80,22 @@ void LoopJob::wish(Wish wish) {
   };
   while (!is_final() && !motion_.wish.compare_exchange_weak(present, {present.number + 1, wish})) {
   }
+}
+
+void LoopJob::on_input(const InputReaction& reaction) {
+  constexpr std::array kWishes = {Wish::kPause, Wish::kRun, Wish::kStop};
+  const auto place = std::ranges::find(kWishes, reaction.wish);
+  if (place == kWishes.end()) {
+    throw MotionError(ErrorCode::kBadArgument, "an input cannot make a run do that",
+                      {"let it pause, resume or stop the run"});
+  }
+  if (reaction.input < -1 || reaction.input >= InputReaction::kInputs) {
+    throw MotionError(ErrorCode::kBadArgument,
+                      "there is no input " + std::to_string(reaction.input) + "; inputs are 0 to " +
+                          std::to_string(InputReaction::kInputs - 1));
+  }
+  motion_.reactions[static_cast<std::size_t>(place - kWishes.begin())].store(
+      reaction, std::memory_order_release);
 }
 
 std::vector<LogRecord> LoopJob::log() const {

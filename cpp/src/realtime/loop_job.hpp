@@ -32,6 +32,7 @@ class LoopJob final : public OpenJob {
   void stop(StopCategory category) override {
     wish(category == StopCategory::kRelease ? Wish::kRelease : Wish::kStop);
   }
+  void on_input(const InputReaction& reaction) override;
   [[nodiscard]] RunState state() const override { return motion_.state; }
   [[nodiscard]] double nominal_time() const override { return motion_.nominal_time; }
   [[nodiscard]] double duration() const override { return chain_.duration(); }

@@ -9,8 +9,10 @@ namespace {
 
 /// With less motion than this before it, the arm is given what is certain, however little [s].
 constexpr double kEnough = 1.0;
-/// With less than this, it is to rest where no way is found to go on without [s].
-constexpr double kLittle = 0.25;
+/// With less than this, and twice what handing over takes, it is to rest where no way is found to
+/// go on without; there is no hurry before, because such a rest is where the motion ends anyway
+/// [s].
+constexpr double kLittle = 0.02;
 
 bool is_over(const Job& job) {
   const RunState state = job.state();
@@ -39,7 +41,7 @@ void MotionStream::add(const Step& step) {
   tried_ = Need::kNone;
   ++steps_;
   newest_ = step.source;
-  hand_over();
+  hand_over(false);  // the next one may come at this very moment
 }
 
 void MotionStream::end() {
@@ -48,13 +50,16 @@ void MotionStream::end() {
   hand_over();
 }
 
-void MotionStream::hand_over() {
+void MotionStream::hand_over() { hand_over(true); }
+
+void MotionStream::hand_over(bool may_rest) {
   for (;;) {
     if (job_ != nullptr && is_over(*job_)) return;
     if (is_offered_ && !is_decided()) return;
     const double not_before = job_ == nullptr ? 0.0 : job_->earliest_leave() + margin_;
     const double left = time_left();
-    const Need need = left < kLittle ? Need::kNow : left < kEnough ? Need::kSoon : Need::kLater;
+    const bool is_now = may_rest && left < std::max(kLittle, 2.0 * margin_);
+    const Need need = is_now ? Need::kNow : left < kEnough ? Need::kSoon : Need::kLater;
     if (tried_ >= need) return;  // and nothing has come since
     const int stops = planner_.stops();
     std::optional<MotionChunk> chunk =

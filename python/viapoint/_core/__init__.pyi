@@ -32,6 +32,7 @@ __all__: list[str] = [
     "MAX_JOINTS",
     "MotionPieces",
     "MotionProgram",
+    "MotionStream",
     "MoveOptions",
     "POSITION_TOLERANCE",
     "PlannedMotion",
@@ -47,7 +48,7 @@ __all__: list[str] = [
     "ToolCalibration",
     "ToolExtrema",
     "VelocityEllipsoid",
-    "VirtualJog",
+    "VirtualLoop",
     "WantedLeg",
     "admit",
     "builtin_robots",
@@ -1267,6 +1268,11 @@ class RunReport:
         Cycles that woke a whole cycle late or more.
         """
     @property
+    def rested_cycles(self) -> int:
+        """
+        Cycles at rest that left no record.
+        """
+    @property
     def wall_time(self) -> float:
         """
         First to last cycle.
@@ -1340,9 +1346,9 @@ class ControllerLoop:
     @property
     def shortcomings(self) -> list[str]: ...
 
-class VirtualJog:
+class VirtualLoop:
     """
-    Hold-to-run in virtual time.
+    The same in virtual time.
     """
     def __init__(
         self,
@@ -1350,17 +1356,100 @@ class VirtualJog:
         start: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
         *,
         cycle: typing.SupportsFloat | typing.SupportsIndex,
+        tool_speed: typing.SupportsFloat | typing.SupportsIndex,
+        box_min: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"],
+        box_max: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"],
     ) -> None: ...
+    def close(self) -> None: ...
     def jog(
         self, velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
-    ) -> None: ...
-    def pass_cycles(self, count: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    ) -> None:
+        """
+        Joint velocities for the next 250 ms.
+        """
+    def pass_cycles(self, count: typing.SupportsInt | typing.SupportsIndex) -> int:
+        """
+        Let cycles pass until a run ends or nothing moves; how many have passed.
+        """
+    def run(self, motion: PlannedMotion) -> Job: ...
+    @property
+    def busy(self) -> bool: ...
+    @property
+    def fault(self) -> str: ...
+    @property
+    def is_open(self) -> bool: ...
     @property
     def jog_block(self) -> str: ...
     @property
     def jogging(self) -> bool: ...
     @property
+    def measured(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
+    @property
+    def override(self) -> float: ...
+    @override.setter
+    def override(self, arg1: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    @property
     def position(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
+
+class MotionStream:
+    """
+    Runs a program while it is told. Threads: any.
+    """
+    @typing.overload
+    def __init__(
+        self,
+        loop: ControllerLoop,
+        robot: RobotModel,
+        program: MotionProgram,
+        *,
+        margin: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> None: ...
+    @typing.overload
+    def __init__(
+        self,
+        loop: VirtualLoop,
+        robot: RobotModel,
+        program: MotionProgram,
+        *,
+        margin: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> None: ...
+    def end(self) -> None:
+        """
+        No step follows.
+        """
+    def hand_over(self) -> None:
+        """
+        Hand over what is due.
+        """
+    def take(self, program: MotionProgram, kept: typing.SupportsInt | typing.SupportsIndex) -> None:
+        """
+        Take the steps of a program from the number kept on, and drop them there.
+        """
+    def take_corners(self) -> list[Corner]:
+        """
+        Corners decided since the last call.
+        """
+    def take_warnings(self) -> list[Problem]:
+        """
+        Warnings met since the last call.
+        """
+    @property
+    def job(self) -> Job | None:
+        """
+        The run, once it has begun.
+        """
+    @property
+    def late(self) -> list[tuple[int, str, int, int]]:
+        """
+        (step, file, line, cycles waited) of the newest late steps.
+        """
+    @property
+    def late_count(self) -> int: ...
+    @property
+    def steps_ahead(self) -> int:
+        """
+        Steps told that the arm has not begun.
+        """
 
 def admit(
     motion: PlannedMotion,

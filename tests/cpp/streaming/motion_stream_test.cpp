@@ -65,12 +65,16 @@ class Recorder final : public OpenJob {
   void step() override { job_->step(); }
   void backward() override { job_->backward(); }
   void stop(StopCategory category) override { job_->stop(category); }
+  void on_input(const InputReaction& reaction) override { job_->on_input(reaction); }
   [[nodiscard]] RunState state() const override { return job_->state(); }
   [[nodiscard]] double nominal_time() const override { return job_->nominal_time(); }
   [[nodiscard]] double duration() const override { return job_->duration(); }
   [[nodiscard]] std::uint64_t overruns() const override { return job_->overruns(); }
   [[nodiscard]] int move() const override { return job_->move(); }
   [[nodiscard]] std::vector<LogRecord> log() const override { return job_->log(); }
+  [[nodiscard]] std::vector<LogRecord> log(std::uint64_t from, std::size_t count) const override {
+    return job_->log(from, count);
+  }
   [[nodiscard]] RunReport report() const override { return job_->report(); }
   void lengthen(std::shared_ptr<const Trajectory> next, double leave) override {
     offered_ = {leave, *next};

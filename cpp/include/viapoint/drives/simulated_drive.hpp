@@ -1,16 +1,21 @@
 /// @file
 #pragma once
 
+#include <atomic>
+#include <cstdint>
 #include <memory>
 
 #include "viapoint/realtime/drive.hpp"
 
 namespace viapoint {
 
-/// An arm that is where it was told one cycle before. Starts at `start`. No inputs.
+/// An arm that is where it was told one cycle before. Starts at `start`.
 class SimulatedDrive final : public Drive {
  public:
-  explicit SimulatedDrive(const JointVector& start);
+  /// @param inputs what it reports as digital inputs, bit i for input i, written by any thread;
+  ///        none: all are off
+  explicit SimulatedDrive(const JointVector& start,
+                          std::shared_ptr<const std::atomic<std::uint64_t>> inputs = nullptr);
   [[nodiscard]] int joints() const override;
   Measurement enable() override;
   [[nodiscard]] DriveStatus exchange(const Setpoint& setpoint,
@@ -18,6 +23,7 @@ class SimulatedDrive final : public Drive {
   void release() noexcept override;
 
  private:
+  std::shared_ptr<const std::atomic<std::uint64_t>> inputs_;
   Measurement measurement_;
   JointVector told_;  ///< setpoint of the cycle before
 };

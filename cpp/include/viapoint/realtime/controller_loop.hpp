@@ -14,6 +14,7 @@
 #include "viapoint/realtime/clock.hpp"
 #include "viapoint/realtime/drive.hpp"
 #include "viapoint/realtime/guard.hpp"
+#include "viapoint/realtime/input_reaction.hpp"
 #include "viapoint/realtime/motion_link.hpp"
 #include "viapoint/realtime/motion_log.hpp"
 #include "viapoint/trajectory/trajectory.hpp"
@@ -69,6 +70,11 @@ class Job {
   virtual void backward() = 0;
   /// To rest on the path; then state kStopped.
   virtual void stop(StopCategory category = StopCategory::kHold) = 0;
+  /// Pauses, resumes or stops (kHold) by itself on an input, in the cycle after the drive has
+  /// reported it. One reaction for each of the three, the newest; without an input it is taken
+  /// back.
+  /// @throws MotionError(kBadArgument) for another input or wish
+  virtual void on_input(const InputReaction& reaction) = 0;
   [[nodiscard]] virtual RunState state() const = 0;
   [[nodiscard]] virtual double nominal_time() const = 0;  ///< progress [s]
   [[nodiscard]] virtual double duration() const = 0;      ///< nominal [s]

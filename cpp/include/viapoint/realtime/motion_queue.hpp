@@ -2,12 +2,14 @@
 /// The real-time boundary: finished motions cross it one way, spent ones come back.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <boost/lockfree/spsc_queue.hpp>
 #include <cstdint>
 #include <memory>
 
 #include "viapoint/core/nonblocking.hpp"
+#include "viapoint/realtime/input_reaction.hpp"
 #include "viapoint/realtime/interpolator.hpp"
 #include "viapoint/realtime/motion_log.hpp"
 #include "viapoint/trajectory/trajectory.hpp"
@@ -29,7 +31,9 @@ struct QueuedMotion {
 
   std::atomic<NumberedWish> wish{};              ///< written by ordinary threads
   std::atomic<const MotionLink*> link{nullptr};  ///< by them; emptied by the tick
-  std::atomic<bool> closed{false};               ///< by them: an open motion gets no longer
+  /// A place for each wish there is: written by them, emptied by the tick when it has wished.
+  std::array<std::atomic<InputReaction>, 3> reactions{};
+  std::atomic<bool> closed{false};  ///< by them: an open motion gets no longer
 
   std::atomic<RunState> state{RunState::kRunning};  ///< the rest is written by the tick
   std::atomic<LinkFate> fate{LinkFate::kNotYet};    ///< of the last link, before `link` is empty

@@ -64,6 +64,8 @@ class MotionStream {
   /// How soon the arm needs more, and so how much is worth a chunk.
   enum class Need : std::uint8_t { kNone, kLater, kSoon, kNow };
 
+  /// @param may_rest hands over motion that begins at rest on the path, too, if it is time for that
+  void hand_over(bool may_rest);
   void begin(MotionChunk chunk);
   void offer(MotionChunk chunk);
   [[nodiscard]] bool is_decided();

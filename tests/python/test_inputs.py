@@ -1,0 +1,76 @@
+"""Runs that act on digital inputs by themselves."""
+
+import time
+
+import pytest
+
+import viapoint as vp
+from viapoint import _session, errors
+
+
+class _Virtual(_session.Session):
+    virtual = True
+
+
+@pytest.fixture(params=["clock", "virtual"])
+def arm(request):
+    """The same arm on the machine's clock and in virtual time."""
+    if request.param == "virtual":
+        with _session.use(_Virtual()), vp.connect("sim://two_link") as connected:
+            yield connected
+    else:
+        with vp.connect("sim://two_link") as connected:
+            yield connected
+
+
+def reached(condition):
+    """Look until a condition holds, for half a minute at most."""
+    deadline = time.monotonic() + 30.0
+    while not condition():
+        if time.monotonic() > deadline:
+            return False
+        time.sleep(0.001)
+    return True
+
+
+def test_a_run_pauses_and_goes_on_by_an_input(arm):
+    program = vp.Program(arm.robot, start=[0, 0], scale=0.3).movej([1.0, 1.0])
+    job = arm.run(program, wait=False)
+    job.on_input(3, True, "pause")
+    arm.set_input(3, True)
+    assert reached(lambda: job.state == "paused")
+    assert arm.input(3)
+    assert not arm.input(4)
+    job.on_input(3, False, "resume")
+    assert job.state == "paused"
+    arm.set_input(3, False)
+    assert job.wait(30.0)
+    assert job.state == "finished"
+
+
+def test_a_stream_stops_by_an_input(arm):
+    with arm.stream() as stream:
+        stream.movej([0.5, 0.5]).movej([0.0, 0.0])
+        assert reached(lambda: stream.job is not None)
+        stream.job.on_input(0, action="stop")
+        arm.set_input(0, True)
+        assert reached(lambda: stream.job.ended)
+    assert stream.job.state == "stopped"
+
+
+@pytest.mark.parametrize(
+    ("told", "what"),
+    [((64,), "index"), ((True,), "index"), ((1, 1), "value"), ((1, True, "jump"), "action")],
+)
+def test_a_reaction_that_means_nothing_is_refused(arm, told, what):
+    job = arm.run(vp.Program(arm.robot, start=[0, 0]).movej([0.1, 0.1]), wait=False)
+    with pytest.raises(errors.BadArgumentError, match=what):
+        job.on_input(*told)
+
+
+def test_an_input_that_is_none_is_refused(arm):
+    for use in (lambda: arm.input(64), lambda: arm.set_input(-1, True)):
+        with pytest.raises(errors.BadArgumentError, match="index"):
+            use()
+    with pytest.raises(errors.BadArgumentError, match="value"):
+        arm.set_input(1, 1)
