@@ -204,3 +204,12 @@ def test_thousands_of_moves_are_dropped_as_they_pass(in_virtual_time):
         assert stream.late_count == 0
         # Longer than the loop's ring of records, and longer than what is kept of the way.
         assert stream.job.report.cycles > 4096
+
+
+def test_dense_points_do_not_wait_for_ones_to_come(arm):
+    """No line waits for ones that may only be told when it has been run."""
+    with arm.stream(zone=vp.joint_deviation(0.01), ahead=4) as stream:
+        for k in range(1, 41):
+            stream.movej([0.005 * k, 0.0, 0.0])
+    assert stream.job.state == "finished"
+    np.testing.assert_allclose(arm.joints, [0.2, 0.0, 0.0], atol=1e-9)

@@ -36,6 +36,7 @@ class ItineraryWalk::Walk {
   }
 
   void end() { merger_.flush(); }
+  void merge_nothing() { merger_.merge_nothing(); }
 
   [[nodiscard]] bool begun() const { return begun_; }
 
@@ -333,6 +334,7 @@ ItineraryWalk::~ItineraryWalk() = default;
 bool ItineraryWalk::begun() const { return walk_->begun(); }
 void ItineraryWalk::take(const Step& step, int index) { walk_->take(step, index); }
 void ItineraryWalk::end() { walk_->end(); }
+void ItineraryWalk::merge_nothing() { walk_->merge_nothing(); }
 Itinerary ItineraryWalk::found() { return walk_->found(); }
 
 Itinerary make_itinerary(RobotPtr robot, const MotionProgram& program) {

@@ -47,6 +47,8 @@ class ItineraryWalk {
   void take(const Step& step, int index);
   /// No step follows: what was held back is found, too.
   void end();
+  /// From now on lines are taken as they come, however near to one line.
+  void merge_nothing();
   /// What was found since the last call.
   [[nodiscard]] Itinerary found();
 

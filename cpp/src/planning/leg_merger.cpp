@@ -115,7 +115,7 @@ bool end_at(Leg& leg, const JointVector& goal) {
 
 void LegMerger::add(Leg leg) {
   if (!run_.empty() && !goes_on_with(leg)) flush();
-  const bool may_go_on = same_kind(leg, leg) && fits(leg.options.zone, in_joints(leg));
+  const bool may_go_on = merges_ && same_kind(leg, leg) && fits(leg.options.zone, in_joints(leg));
   if (may_go_on || !run_.empty()) {
     if (run_.empty()) places_ = {place_of(leg, leg.start)};
     places_.push_back(place_of(leg, leg.goal));

@@ -31,6 +31,11 @@ class LegMerger {
   void add(Leg leg);
   /// What is held back cannot go on.
   void flush();
+  /// From now on every leg is given on at once.
+  void merge_nothing() {
+    flush();
+    merges_ = false;
+  }
 
  private:
   /// In the space in which the legs are straight, and the tool's orientation where it counts.
@@ -59,7 +64,8 @@ class LegMerger {
   Emit emit_;
   std::vector<Leg> run_;       ///< held back: one, or all that make one leg
   std::vector<Place> places_;  ///< its start and the ends of its legs
-  Zone before_;                ///< of the leg before the run
+  bool merges_ = true;
+  Zone before_;  ///< of the leg before the run
 };
 
 }  // namespace viapoint::planning

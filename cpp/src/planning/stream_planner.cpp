@@ -67,6 +67,11 @@ class StreamPlanner::Line {
     }
   }
 
+  void merge_nothing() {
+    walk_.merge_nothing();
+    (void)take_found();  // no step, no error
+  }
+
   void end() {
     if (ended_) return;
     ended_ = true;
@@ -394,6 +399,7 @@ StreamPlanner::StreamPlanner(StreamPlanner&&) noexcept = default;
 StreamPlanner& StreamPlanner::operator=(StreamPlanner&&) noexcept = default;
 
 void StreamPlanner::add(const Step& step) { line_->add(step); }
+void StreamPlanner::merge_nothing() { line_->merge_nothing(); }
 void StreamPlanner::end() { line_->end(); }
 std::optional<MotionChunk> StreamPlanner::next(double not_before, bool at_once, bool may_rest) {
   return line_->next(not_before, at_once, may_rest);

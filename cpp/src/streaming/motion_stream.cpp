@@ -32,6 +32,7 @@ MotionStream::MotionStream(RobotPtr robot, const MotionProgram& beginning, Follo
       follow_(std::move(follow)),
       margin_(margin),
       steps_(static_cast<int>(beginning.steps.size())) {
+  planner_.merge_nothing();
   if (steps_ > 0) newest_ = beginning.steps.back().source;
 }
 

@@ -49,6 +49,9 @@ class StreamPlanner {
   /// Takes the next step. @throws MotionError: what is wrong with it, as plan() says it. That step
   /// is not taken, and the program ends before it: what was taken is still handed out.
   void add(const Step& step);
+  /// From now on straight lines are taken as they come, however near to one line: none waits for
+  /// lines that may be told only when it has been run.
+  void merge_nothing();
   /// No step follows: the arm comes to rest at the last point.
   void end();
   /// The next chunk, if enough has come for one, or all that will come.
