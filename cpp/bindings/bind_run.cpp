@@ -98,7 +98,7 @@ LogHandle log_of(const Columns& columns) {
   fill("outputs", &LogRecord::outputs);
   const py::array_t<std::uint8_t> states = column_named<std::uint8_t>(columns, "state", {count});
   for (size_t k = 0; k < log.records.size(); ++k) {
-    if (states.data()[k] > static_cast<std::uint8_t>(RunState::kReturning)) {
+    if (states.data()[k] > static_cast<std::uint8_t>(RunState::kWaiting)) {
       throw MotionError(ErrorCode::kBadArgument, "The log's column \"state\" holds no state.");
     }
     log.records[k].state = static_cast<RunState>(states.data()[k]);

@@ -15,6 +15,7 @@ class EndedJob final : public Job {
   void step() override {}
   void backward() override {}
   void stop(StopCategory) override {}
+  void on_input(const InputReaction&) override {}
   [[nodiscard]] RunState state() const override { return RunState::kFinished; }
   [[nodiscard]] double nominal_time() const override { return 1.0; }
   [[nodiscard]] double duration() const override { return 1.0; }
