@@ -149,7 +149,22 @@ class Stream(Program):
 
     @property
     def job(self) -> StreamJob | None:
-        """The run; None until the arm has begun to move."""
+        """The run; None while there is nothing to move.
+
+        Asking for it begins the motion with the steps told so far.
+
+        Raises
+        ------
+        MotionError
+            Why it could not begin.
+        """
+        if self._begun is None and not self._closed.is_set():
+            self._stream.hand_over()
+        return self._begun
+
+    @property
+    def _begun(self) -> StreamJob | None:
+        """The run, if the motion has begun."""
         if self._job is None and (core := self._stream.job) is not None:
             loop = self._loop
             execution = loop.executed(core) if isinstance(loop, VirtualLoop) else core
@@ -207,8 +222,8 @@ class Stream(Program):
         try:
             if not stop:
                 self._stream.end()
-            if self.job is not None:
-                self.job.finish(stop=stop)
+            if (job := self._begun) is not None:
+                job.finish(stop=stop)
         finally:
             self._closed.set()
             if isinstance(self._loop, VirtualLoop):
@@ -268,7 +283,7 @@ class Stream(Program):
                 self._stream.hand_over()
             except BaseException as error:  # noqa: BLE001 -- raised where the script tells a step
                 self._trouble = error
-                if (job := self.job) is not None:
+                if (job := self._begun) is not None:
                     job.stop()
                 return
 

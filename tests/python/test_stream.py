@@ -93,6 +93,7 @@ def test_a_script_that_thinks_too_long_is_told_so_by_its_line(arm):
 def tell_all(stream, points):
     for q in points:
         stream.movej(q)
+    assert not stream.job.ended
 
 
 def test_a_step_that_is_refused_raises_at_its_line_and_the_arm_rests(puma, abc, in_virtual_time):
@@ -105,7 +106,16 @@ def test_a_step_that_is_refused_raises_at_its_line_and_the_arm_rests(puma, abc, 
     assert caught.value.file == __file__
     lines = Path(__file__).read_text(encoding="utf-8").splitlines()
     assert "[100.0] * 6" in lines[caught.value.line - 1]
-    assert stream.job.state in ("stopped", "finished")
+    assert stream.job is None or stream.job.state in ("stopped", "finished")
+
+
+def test_nothing_moves_where_the_script_fails_before_the_motion_has_begun(in_virtual_time):
+    robot = vp.joint_robot(3, velocity=3.0, acceleration=20.0, jerk=400.0)
+    with vp.connect("sim://axes", robot=robot) as arm:
+        with pytest.raises(ZeroDivisionError), arm.stream() as stream:
+            raise ZeroDivisionError(stream.movej([0.1] * 3))
+        assert stream.job is None
+        assert not arm.joints.any()
 
 
 def test_an_exception_brings_the_arm_to_rest_on_its_path(arm):

@@ -33,16 +33,17 @@ MotionStream::MotionStream(RobotPtr robot, const MotionProgram& beginning, Follo
       margin_(margin),
       steps_(static_cast<int>(beginning.steps.size())) {
   planner_.merge_nothing();
-  if (steps_ > 0) newest_ = beginning.steps.back().source;
+  if (steps_ > 0) blamed_ = {steps_ - 1, beginning.steps.back().source, 0};
 }
 
 void MotionStream::add(const Step& step) {
   planner_.add(step);
   left_then_ = time_left();
   tried_ = Need::kNone;
+  if (!awaited_) awaited_ = LateStep{steps_, step.source, 0};
   ++steps_;
-  newest_ = step.source;
-  hand_over(false);  // the next one may come at this very moment
+  // The next one may come at this very moment; the first motion should see as many as do.
+  if (job_ != nullptr) hand_over(false);
 }
 
 void MotionStream::end() {
@@ -66,6 +67,8 @@ void MotionStream::hand_over(bool may_rest) {
     std::optional<MotionChunk> chunk =
         planner_.next(std::max(0.0, not_before), need >= Need::kSoon, need == Need::kNow);
     tried_ = chunk ? Need::kNone : need;
+    if (chunk) blamed_ = awaited_.value_or(blamed_);
+    if (chunk || need == Need::kNow) awaited_.reset();
     if (!chunk) {
       if (job_ != nullptr && planner_.done()) job_->close();
       return;
@@ -88,7 +91,6 @@ void MotionStream::begin(MotionChunk chunk) {
 void MotionStream::offer(MotionChunk chunk) {
   job_->lengthen(std::make_shared<const Trajectory>(std::move(chunk.motion)), chunk.begin);
   is_offered_ = true;
-  blamed_ = {steps_ - 1, newest_, 0};
   move_all(chunk.corners, corners_);
   move_all(chunk.warnings, warnings_);
 }

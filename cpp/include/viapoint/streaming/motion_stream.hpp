@@ -27,7 +27,7 @@ struct LateStep {
 /// waits for that before the corner.
 ///
 /// Nothing here waits: whoever tells the steps calls hand_over() again and again, at least every
-/// 50 ms, until the run has ended.
+/// 50 ms, until the run has ended. The first such call begins the motion.
 /// Memory does not grow with the number of steps. Real-time: not. Threads: one at a time.
 class MotionStream {
  public:
@@ -39,7 +39,7 @@ class MotionStream {
   /// @throws MotionError as StreamPlanner
   MotionStream(RobotPtr robot, const MotionProgram& beginning, Follow follow, double margin);
 
-  /// Takes the next step, and hands over what has become certain by it.
+  /// Takes the next step, and hands over what has become certain by it to an arm that is moving.
   /// @throws MotionError what is wrong with the step, which then is not taken: no other can follow,
   ///   and the arm rests where the steps before it end; or why the arm does not take up the motion
   void add(const Step& step);
@@ -76,13 +76,15 @@ class MotionStream {
   Follow follow_;
   double margin_;
   std::shared_ptr<OpenJob> job_;
-  bool is_offered_ = false;   ///< a motion whose fate is open
-  bool is_stop_ = false;      ///< it begins where the arm rests on its path
-  LateStep blamed_;           ///< if it turns out late: the newest step when it was handed over
+  bool is_offered_ = false;  ///< a motion whose fate is open
+  bool is_stop_ = false;     ///< it begins where the arm rests on its path
+  /// The first step that was told after the arm had all that was certain, if one was; and the one
+  /// that the motion handed over last had waited for.
+  std::optional<LateStep> awaited_;
+  LateStep blamed_;
   Need tried_ = Need::kNone;  ///< that there was too little for
   std::uint64_t waited_ = 0;
   int steps_ = 0;
-  SourceLine newest_;
   double left_then_ = 0.0;  ///< motion that was left when it came [s]
   int last_late_ = -1;
   std::uint64_t late_count_ = 0;
