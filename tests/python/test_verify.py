@@ -102,6 +102,14 @@ def test_random_programs_of_four_robots_hold(first):
     assert planned >= 10
 
 
+def test_a_blend_whose_places_are_near_to_two_of_a_curved_leg_holds():
+    file = Path(__file__).parents[1] / "data" / "curved_legs.json"
+    motion = vp.Program.load(file, vp.load_robot("puma560")).plan()
+    assert not motion.corners[0].stopped
+    verdict = verifier.verify_bytes(motion_text(motion))
+    assert verdict.holds, found(verdict)
+
+
 @pytest.mark.parametrize(("most", "wrong"), [(1e3, False), (0.5, True)])
 def test_timed_motions_are_held_against_limits_alone(most, wrong):
     robot = vp.joint_robot(2, velocity=[most] * 2, acceleration=[1e3] * 2, jerk=[1e6] * 2)

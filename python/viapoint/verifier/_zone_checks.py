@@ -209,10 +209,12 @@ class _DeviationCheck(_Check):
             blend, legs = self.of_corner[int(self.owners[item])]
             others = blend if self.cut[item] else legs
             points = self._at(item, np.array([m - h, m, m + h]))
-            distances, _ = _project(points[1], self.lines[others])
-            target[i] = others[np.argmin(distances)]
+            distances, places = _project(points[1], self.lines[others])
+            nearest = int(np.argmin(distances))
+            target[i] = others[nearest]
             line = self.lines[target[i]][None]
-            low, high = (float(_project(points[k], line)[1][0]) for k in (0, 2))
+            # From there, since somewhere else on a bent line may be as near to one of the ends.
+            low, high = (float(_project(points[k], line, places[nearest])[1][0]) for k in (0, 2))
             place[i], width[i] = 0.5 * (low + high), 0.5 * (high - low)
         return target, place, width
 
@@ -250,15 +252,19 @@ def points_at(chain: Chain, tool: Array, q: Array, space: Space = "tool") -> Arr
     return points
 
 
-def _project(point: Array, lines: Array) -> tuple[Array, Array]:
+def _project(point: Array, lines: Array, start: float | None = None) -> tuple[Array, Array]:
     """Distance of a point from sampled curves (m, k, d), and where on each, 0 to 1, it is nearest.
 
-    The square of the distance is taken for a parabola about the nearest sample, which makes the
-    place good to the third order in their spacing.
+    The square of the distance is taken for a parabola about the nearest sample, or about the one
+    that is reached downhill from `start`, which makes the place good to the third order in their
+    spacing.
     """
     square = np.sum((lines - point) ** 2, axis=2)
     rows, last = np.arange(len(lines)), lines.shape[1] - 1
-    best = square.argmin(axis=1)
+    if start is None:
+        best = square.argmin(axis=1)
+    else:
+        best = np.array([_downhill(row, round(start * last)) for row in square])
     middle = np.clip(best, 1, last - 1)
     left, here, right = (square[rows, middle + k] for k in (-1, 0, 1))
     bend = left - 2.0 * here + right
@@ -267,3 +273,14 @@ def _project(point: Array, lines: Array) -> tuple[Array, Array]:
     off = np.where(bend > 0.0, np.clip(off, -1.0, 1.0), best - middle)
     least = here + off * (slope + 0.5 * off * bend)
     return np.sqrt(np.maximum(least, 0.0)), (middle + off) / last
+
+
+def _downhill(values: Array, start: int) -> int:
+    """Return the index of the least value that is reached from `start` without going up."""
+    for step in (-1, 1):
+        at = start
+        while 0 <= at + step < len(values) and values[at + step] < values[at]:
+            at += step
+        if at != start:
+            return at
+    return start
