@@ -13,6 +13,7 @@ import pytest
 import viapoint as vp
 from viapoint import verifier
 from viapoint._motion_file import motion_text
+from viapoint.verifier import _joint_checks, _motion_file
 
 FOLDER = Path(verifier.__file__).parent
 HOMES = {
@@ -108,6 +109,15 @@ def test_a_blend_whose_places_are_near_to_two_of_a_curved_leg_holds():
     assert not motion.corners[0].stopped
     verdict = verifier.verify_bytes(motion_text(motion))
     assert verdict.holds, found(verdict)
+
+
+def test_what_happens_in_a_late_short_piece_is_found_at_its_rounded_beginning():
+    robot = vp.joint_robot(1, velocity=1.0, acceleration=10.0, jerk=100.0)
+    planned = vp.Program(robot, start=[0.0]).wait(1e5).movej([1e-7]).plan()
+    motion = _motion_file.read(motion_text(planned))
+    begin = motion.starts[np.flatnonzero(motion.moves == 1)[0]]
+    early = np.array([np.nextafter(begin, 0.0)])
+    assert _joint_checks.rates_at(motion, early, 3)[0, 0] == pytest.approx(100.0)
 
 
 @pytest.mark.parametrize(("most", "wrong"), [(1e3, False), (0.5, True)])

@@ -48,8 +48,8 @@ def _check_rules(motion: MotionFile, verdict: Verdict) -> None:
     rules = motion.certificate["rules"]
     middles = np.array([0.5 * (rule["from"] + rule["to"]) for rule in rules])
     widths = np.array([rule["to"] - rule["from"] for rule in rules])
-    # Just before and after: jerk may step in the middle itself.
-    sides = np.stack([_shares(motion, middles + side * widths) for side in (-BESIDE, BESIDE)])
+    # There, just before and after: jerk may step in the middle, or a piece may hardly last.
+    sides = np.stack([_shares(motion, middles + side * widths) for side in (-BESIDE, 0.0, BESIDE)])
     for k, rule in enumerate(rules):
         if abs(rule["from"] - end) > SAME_TIME * max(end, 1.0):
             verdict.findings.append(Finding(f"rule {k} does not begin where the one before ends"))
