@@ -1,11 +1,13 @@
 """Measure viapoint on this machine and print tables.
 
-Subjects: ``tick`` (one cycle of the interpolator), ``plan`` (planning a move), ``certificate``
+Subjects: ``tick`` (one cycle of the interpolator), ``commands`` (random commands replayed against
+geometry and limits), ``plan`` (planning a move), ``certificate``
 (proving a motion), ``walk`` (timing of long paths), ``growth`` (time and memory a move, from ten
 moves to a hundred thousand), ``insertion`` (tool curves as joints, every
 proof checked), ``kinematics`` (inverse kinematics), ``tracking`` (tool lines followed pose by
 pose), all in C++ by viapoint-bench; ``sample`` (states of a motion into numpy arrays) and
 ``programs`` (random programs planned and proven) in Python;
+``stops`` (stops on the path beside the shortest that a linear program finds);
 ``realtime`` (wake-ups of the loop beside cyclictest, idle and under stress-ng);
 ``remote`` (a controller in a process of its own: calls, heartbeat, latency while clients
 misbehave); ``profiles`` (state to state) beside Ruckig, ``paths`` (timing along paths, corners)
@@ -29,12 +31,22 @@ from benches import (
     remote,
     sampling,
     soundness,
+    stops,
     tables,
 )
 from benches.machine import ROOT, machine
 from benches.tables import Row
 
-SUBJECTS = (*core.SUBJECTS, "sample", "programs", "realtime", "remote", "profiles", "paths")
+SUBJECTS = (
+    *core.SUBJECTS,
+    "sample",
+    "programs",
+    "stops",
+    "realtime",
+    "remote",
+    "profiles",
+    "paths",
+)
 BY_THE_MILLION = ("profiles", "programs")
 PROGRAMS = 60
 
@@ -56,6 +68,8 @@ def measure(subject: str, options: argparse.Namespace) -> tuple[list[Row], list[
         return sampling.measure(quick=options.quick), []
     if subject == "paths":
         return paths.measure(options.program.parent, quick=options.quick), []
+    if subject == "stops":
+        return stops.measure(options.program, quick=options.quick), []
     if subject == "realtime":
         return realtime.measure(quick=options.quick), []
     if subject == "remote":

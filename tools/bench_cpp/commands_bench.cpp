@@ -66,7 +66,7 @@ void replay(unsigned seed, Tally& tally) {
 void bench_commands(int sequences) {
   Tally tally;
   for (int seed = 0; seed < sequences; ++seed) replay(static_cast<unsigned>(seed), tally);
-  JsonLine("commands", "at random on random motions")
+  JsonLine("commands", "at random")
       .add("sequences", sequences)
       .add("cycles", tally.cycles)
       .add("backward_cycles", tally.backward)

@@ -11,7 +11,7 @@ constexpr std::string_view kUsage =
     "usage: viapoint-bench tick [TICKS] | commands [SEQUENCES] | plan [PROGRAMS] |\n"
     "                      certificate [PROGRAMS] | walk [PATHS] | growth [MOVES] |\n"
     "                      insertion [PROBLEMS] | kinematics [POSES] | tracking [LINES] | all |\n"
-    "                      programs [PROGRAMS]\n"
+    "                      programs [PROGRAMS] | stops [STOPS]\n"
     "Prints one JSON object a line; times as its keys say.\n";
 
 constexpr int kTicks = 1'000'000;
@@ -72,6 +72,8 @@ int main(int argc, char** argv) {
       bench_tracking(count);
     } else if (command == "programs") {
       print_random_programs(count);
+    } else if (command == "stops") {
+      print_stops(count);
     } else if (command == "all" && argc == 2) {
       bench_kinematics(kPoses);
       bench_tracking(kLines);

@@ -7,10 +7,21 @@ from pathlib import Path
 from benches import instructions
 from benches.tables import Row
 
-SUBJECTS = ("tick", "plan", "certificate", "walk", "growth", "insertion", "kinematics", "tracking")
+SUBJECTS = (
+    "tick",
+    "commands",
+    "plan",
+    "certificate",
+    "walk",
+    "growth",
+    "insertion",
+    "kinematics",
+    "tracking",
+)
 # What a quick look measures: enough to see the order of magnitude.
 QUICK = {
     "tick": 100_000,
+    "commands": 100,
     "plan": 10,
     "certificate": 10,
     "walk": 3,

@@ -54,7 +54,6 @@ def stressed(wanted: bool) -> Iterator[None]:
     if not wanted:
         yield
         return
-    workers = str(os.cpu_count() or 1)
     workers = f"--cpu {os.cpu_count() or 1} --vm 1 --vm-bytes 64M --switch 1 --timer 1"
     load = subprocess.Popen(
         ["stress-ng", "--quiet", *workers.split()],
