@@ -129,14 +129,18 @@ Measurement ControllerLoop::measured() const {
   return impl_->desk.channels().snapshot.read().measurement;
 }
 
+LoopCycle ControllerLoop::newest_cycle() const { return impl_->desk.channels().snapshot.read(); }
+
+void ControllerLoop::switch_outputs(std::uint64_t mask, std::uint64_t values) {
+  impl_->desk.channels().switches.set(mask, values);
+}
+
 bool ControllerLoop::busy() const {
   const auto job = impl_->desk.job();
   return job != nullptr && !job->ended();
 }
 
-JointVector ControllerLoop::position() const {
-  return impl_->desk.channels().snapshot.read().position;
-}
+JointVector ControllerLoop::position() const { return impl_->desk.channels().snapshot.read().q; }
 
 std::string ControllerLoop::fault() const { return impl_->desk.fault(); }
 

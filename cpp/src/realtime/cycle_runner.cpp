@@ -62,7 +62,12 @@ void CycleRunner::do_cycle() noexcept VIAPOINT_NONBLOCKING {
   interpolator_.set_override(channels_.override_share.load(std::memory_order_relaxed));
 
   const std::int64_t begin = clock_.now();
-  if (!off_path_) interpolator_.tick(setpoint_);
+  if (!off_path_) {
+    interpolator_.tick(setpoint_);
+    outputs_.follow(setpoint_.outputs);
+  }
+  outputs_.switch_by_hand(channels_.switches);
+  setpoint_.outputs = outputs_.sent();
   const bool is_at_rest = guard();
   const std::int64_t end = clock_.now();
   const DriveStatus status = drive_.exchange(setpoint_, measurement_);
@@ -73,7 +78,7 @@ void CycleRunner::do_cycle() noexcept VIAPOINT_NONBLOCKING {
   channels_.jogging.store(interpolator_.jogging() || (off_path_ && !fault),
                           std::memory_order_release);
   channels_.jog_block.store(interpolator_.jog_block(), std::memory_order_relaxed);
-  channels_.snapshot.write(setpoint_.q, measurement_);
+  show();
   record(end - begin);
   if (motion_ != nullptr && off_path_) {
     motion_->state.store(RunState::kStopping, std::memory_order_release);
@@ -161,6 +166,8 @@ void CycleRunner::begin_next() noexcept VIAPOINT_NONBLOCKING {
   motion_ = channels_.motions.pop();
   if (motion_ == nullptr) return;
   interpolator_.set_override(channels_.override_share.load(std::memory_order_relaxed));
+  interpolator_.set_outputs(outputs_.sent());
+  outputs_.hand_over();
   interpolator_.begin(*motion_->trajectory, motion_->open);
   wish_ = {};
   cycle_of_run_ = 0;
@@ -172,6 +179,20 @@ void CycleRunner::refuse_next() noexcept VIAPOINT_NONBLOCKING {
   if (motion == nullptr) return;
   motion->state.store(RunState::kFault, std::memory_order_release);
   channels_.motions.give_back(motion);
+}
+
+void CycleRunner::show() noexcept VIAPOINT_NONBLOCKING {
+  ++shown_.cycle;
+  shown_.stamp = woke_;
+  shown_.state = interpolator_.state();
+  shown_.rate = interpolator_.rate();
+  shown_.override_share = channels_.override_share.load(std::memory_order_relaxed);
+  shown_.q = setpoint_.q;
+  shown_.qd = setpoint_.qd;
+  shown_.qdd = setpoint_.qdd;
+  shown_.outputs = setpoint_.outputs;
+  shown_.measurement = measurement_;
+  channels_.snapshot.write(shown_);
 }
 
 void CycleRunner::record(std::int64_t compute) noexcept VIAPOINT_NONBLOCKING {

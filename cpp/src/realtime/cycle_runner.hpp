@@ -9,6 +9,7 @@
 
 #include "realtime/cycle_history.hpp"
 #include "realtime/jog_channel.hpp"
+#include "realtime/output_panel.hpp"
 #include "realtime/snapshot.hpp"
 #include "viapoint/realtime/clock.hpp"
 #include "viapoint/realtime/controller_loop.hpp"
@@ -36,6 +37,7 @@ struct LoopChannels {
   boost::lockfree::spsc_queue<LogRecord, boost::lockfree::capacity<4096>> log;
   Snapshot snapshot;                        ///< tick
   JogChannel jog;                           ///< ordinary threads, one at a time
+  OutputSwitches switches;                  ///< ordinary threads
   std::atomic<bool> jogging{false};         ///< tick
   std::atomic<JogBlock> jog_block{};        ///< tick
   std::atomic<double> override_share{1.0};  ///< ordinary threads
@@ -82,6 +84,8 @@ class CycleRunner {
   [[nodiscard]] bool guard() noexcept VIAPOINT_NONBLOCKING;
   /// Ends everything: nothing is told the drive any more.
   void fail(DriveStatus status) noexcept VIAPOINT_NONBLOCKING;
+  /// Tells whoever looks on.
+  void show() noexcept VIAPOINT_NONBLOCKING;
   void record(std::int64_t compute) noexcept VIAPOINT_NONBLOCKING;
   void finish() noexcept VIAPOINT_NONBLOCKING;
   void let_others_run() noexcept;
@@ -106,7 +110,9 @@ class CycleRunner {
   std::uint64_t cycle_of_run_ = 0;
   JointVector wished_;  ///< joint velocities
   Setpoint setpoint_;
+  OutputPanel outputs_;
   Measurement measurement_;
+  LoopCycle shown_;
   LogRecord record_;
 };
 

@@ -50,7 +50,10 @@ RunDesk::RunDesk(std::unique_ptr<Drive> drive, const JointLimits& limits,
     throw MotionError(ErrorCode::kDriveFault,
                       "the drive does not tell where each joint stands after it was enabled");
   }
-  channels_.snapshot.write(powered_.start().q, powered_.start());
+  LoopCycle start;
+  start.q = powered_.start().q;
+  start.measurement = powered_.start();
+  channels_.snapshot.write(start);
 }
 
 std::shared_ptr<LoopJob> RunDesk::run(std::shared_ptr<const Trajectory> trajectory, bool open,
@@ -67,7 +70,7 @@ std::shared_ptr<LoopJob> RunDesk::run(std::shared_ptr<const Trajectory> trajecto
     throw MotionError(ErrorCode::kBusy, "the arm is being jogged",
                       {"stop the jog, and wait until the arm rests"});
   }
-  admit(*trajectory, limits_, channels_.snapshot.read().position);
+  admit(*trajectory, limits_, channels_.snapshot.read().q);
   auto job = std::make_shared<LoopJob>(std::move(trajectory), limits_, log_records_, open);
   if (last_word) last_word();
   {

@@ -52,7 +52,7 @@ bool VirtualLoop::busy() const {
   const auto job = desk_->job();
   return job != nullptr && !job->ended();
 }
-JointVector VirtualLoop::position() const { return desk_->channels().snapshot.read().position; }
+JointVector VirtualLoop::position() const { return desk_->channels().snapshot.read().q; }
 std::string VirtualLoop::fault() const { return desk_->fault(); }
 
 }  // namespace viapoint

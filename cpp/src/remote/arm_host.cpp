@@ -126,7 +126,10 @@ struct ArmHost::Impl {
   void renew_loop(std::unique_lock<std::mutex>& lock) {
     const bool was_released = is_release_wished && (runs.empty() || has_ended(*runs.back().job));
     if (loop != nullptr && loop->fault().empty() && !was_released) return;
-    if (loop != nullptr) last = look_at(*loop);
+    if (loop != nullptr) {
+      last = look_at(*loop);
+      last_cycle = loop->newest_cycle();
+    }
     std::shared_ptr<ControllerLoop> spent = std::exchange(loop, nullptr);
     lock.unlock();
     spent.reset();  // its drive has to be free for the next; it ends under locks of its own
@@ -159,6 +162,7 @@ struct ArmHost::Impl {
   std::condition_variable changed;
   std::shared_ptr<ControllerLoop> loop;  ///< null only where the drive could not be enabled anew
   HostStatus last;                       ///< of the loop before
+  LoopCycle last_cycle;                  ///< of the same
   ControlSeat seat;
   std::vector<TrajectoryPiece> pending;
   std::deque<Run> runs;
@@ -280,6 +284,21 @@ void ArmHost::jog(const std::string& token, const JointVector& velocity) {
   if (impl_->seat.holds(token)) return;
   lock.unlock();
   impl_->end_jog(*loop);
+}
+
+void ArmHost::set_override(double share) {
+  const std::lock_guard lock(impl_->mutex);
+  if (impl_->loop != nullptr) impl_->loop->set_override(share);
+}
+
+void ArmHost::switch_outputs(std::uint64_t mask, std::uint64_t values) {
+  const std::lock_guard lock(impl_->mutex);
+  if (impl_->loop != nullptr) impl_->loop->switch_outputs(mask, values);
+}
+
+LoopCycle ArmHost::newest_cycle() const {
+  const std::lock_guard lock(impl_->mutex);
+  return impl_->loop == nullptr ? impl_->last_cycle : impl_->loop->newest_cycle();
 }
 
 HostStatus ArmHost::status() const {

@@ -15,6 +15,7 @@
 #include "viapoint/realtime/drive.hpp"
 #include "viapoint/realtime/guard.hpp"
 #include "viapoint/realtime/input_reaction.hpp"
+#include "viapoint/realtime/loop_cycle.hpp"
 #include "viapoint/realtime/motion_link.hpp"
 #include "viapoint/realtime/motion_log.hpp"
 #include "viapoint/trajectory/trajectory.hpp"
@@ -156,6 +157,13 @@ class ControllerLoop {
   /// Share of the planned speed in [0, 1]; applies to this run and the next ones.
   void set_override(double share);
   [[nodiscard]] double override_share() const;
+  /// Switches outputs by hand from the next cycle on, at rest or in motion. Each output stays as
+  /// whoever changed it last left it: a hand, or a step of the program that changes it.
+  /// @param mask which outputs, bit i for output i; @param values on or off
+  /// Threads: any.
+  void switch_outputs(std::uint64_t mask, std::uint64_t values);
+  /// The cycle last done. Threads: any; the loop never waits for who asks.
+  [[nodiscard]] LoopCycle newest_cycle() const;
   /// What the drive last measured.
   [[nodiscard]] Measurement measured() const;
   [[nodiscard]] bool busy() const;

@@ -69,6 +69,8 @@ class Interpolator {
   [[nodiscard]] LinkFate lengthen(const MotionLink& link) noexcept VIAPOINT_NONBLOCKING;
   /// No more comes: the motion ends where it ends.
   void close() noexcept VIAPOINT_NONBLOCKING { open_ = false; }
+  /// Where the outputs stand that the next motion begins with. @pre !active()
+  void set_outputs(std::uint64_t outputs) noexcept VIAPOINT_NONBLOCKING { outputs_ = outputs; }
   /// Share of the planned speed, clamped to [0, 1]; 0 acts as a pause. Kept between motions.
   void set_override(double share) noexcept VIAPOINT_NONBLOCKING;
   /// A stop is final for its motion; each kStep is one step more.

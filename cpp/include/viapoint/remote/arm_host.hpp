@@ -12,6 +12,7 @@
 
 #include "viapoint/core/joint_limits.hpp"
 #include "viapoint/realtime/controller_loop.hpp"
+#include "viapoint/realtime/loop_cycle.hpp"
 #include "viapoint/trajectory/trajectory_piece.hpp"
 
 namespace viapoint {
@@ -79,6 +80,14 @@ class ArmHost {
   void set_override(const std::string& token, double share);
   /// @throws MotionError of ControllerLoop::jog
   void jog(const std::string& token, const JointVector& velocity);
+
+  // For a panel beside the operator, which begins no motion and needs no token. While the loop is
+  // built anew there is nothing to turn, and the last cycle is that of the loop before.
+  /// @throws MotionError of ControllerLoop::set_override
+  void set_override(double share);
+  /// As ControllerLoop::switch_outputs.
+  void switch_outputs(std::uint64_t mask, std::uint64_t values);
+  [[nodiscard]] LoopCycle newest_cycle() const;
 
   [[nodiscard]] HostStatus status() const;
   /// A run and its log; the newest kRunsKept are kept.
