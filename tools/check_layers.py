@@ -22,6 +22,7 @@ MAY_INCLUDE: dict[str, frozenset[str]] = {
     "realtime": frozenset({"core", "profile"}),
     "drives": frozenset({"core", "realtime"}),
     "remote": frozenset({"core", "realtime", "trajectory"}),
+    "rtde": frozenset({"core", "kinematics", "realtime"}),
     "streaming": frozenset({"core", "kinematics", "trajectory", "program", "planning", "realtime"}),
 }
 # The single headers that a module may include on top.

@@ -73,6 +73,45 @@ TlsFiles read_tls(const YamlValue& value) {
   return files;
 }
 
+bool is_this_machine(const std::string& address) {
+  return address.starts_with("127.") || address == "::1";
+}
+
+RtdeAddress read_rtde(const YamlValue& value) {
+  YamlMap map(value);
+  RtdeAddress rtde;
+  if (map.has("port")) {
+    const double port = number_in(map.at("port"), 0.0, 65535.0, "");
+    if (port != std::floor(port)) map.at("port").refuse("is no whole number");
+    rtde.port = static_cast<int>(port);
+  }
+  bool is_open = false;
+  if (map.has("other_machines")) {
+    const std::string word = map.at("other_machines").text();
+    if (word != "allowed") {
+      map.at("other_machines").refuse("is \"" + word + "\"; the only word for it is \"allowed\"");
+    }
+    is_open = true;
+  }
+  if (map.has("address")) {
+    rtde.address = map.at("address").text();
+    in6_addr parsed{};
+    const char* const text = rtde.address.c_str();
+    if (inet_pton(AF_INET, text, &parsed) != 1 && inet_pton(AF_INET6, text, &parsed) != 1) {
+      map.at("address").refuse("\"" + rtde.address + "\" is no address in numbers",
+                               {"for example 127.0.0.1, or ::1"});
+    }
+    if (!is_this_machine(rtde.address) && !is_open) {
+      map.at("address").refuse(
+          "RTDE has neither passwords nor encryption: other machines could turn the speed and "
+          "switch outputs there, and nobody would ask who they are",
+          {"serve it on 127.0.0.1", "give \"other_machines: allowed\" where the network is yours"});
+    }
+  }
+  map.finish({"port", "address", "other_machines"});
+  return rtde;
+}
+
 void read_drive(const YamlValue& value) {
   const std::string drive = value.text();
   if (drive != "simulated") {
@@ -118,6 +157,7 @@ Config read(YamlMap map) {
   }
   if (map.has("workspace")) read_workspace(map.at("workspace"), config.guard);
   if (map.has("tls")) config.tls = read_tls(map.at("tls"));
+  if (map.has("rtde")) config.rtde = read_rtde(map.at("rtde"));
   if (map.has("logs")) config.logs = map.at("logs").text();
   if (map.has("listen")) {
     read_address(map.at("listen"), config);
@@ -128,7 +168,7 @@ Config read(YamlMap map) {
     }
   }
   map.finish({"robot", "drive", "start", "listen", "cycle", "heartbeat", "tool_speed", "workspace",
-              "tls", "logs"});
+              "tls", "logs", "rtde"});
   return config;
 }
 

@@ -17,6 +17,12 @@ struct TlsFiles {
   std::string key;          ///< to it
 };
 
+/// Where RTDE clients are served (docs/rtde.md).
+struct RtdeAddress {
+  std::string address = "127.0.0.1";  ///< in numbers
+  int port = 30004;
+};
+
 /// What the configuration file says (docs/controller.md).
 struct Config {
   std::string robot;  ///< built-in name, or path of a .yaml or .urdf
@@ -27,7 +33,8 @@ struct Config {
   JointVector start;   ///< where the simulated drive stands [rad or m]; empty: at zero
   GuardOptions guard;  ///< tool speed and workspace; its kinematics come with the robot
   std::optional<TlsFiles> tls;
-  std::string logs;  ///< folder for the log of every run; empty: none is written
+  std::optional<RtdeAddress> rtde;  ///< none: RTDE is not served
+  std::string logs;                 ///< folder for the log of every run; empty: none is written
 
   /// True where only programs on this machine can connect.
   [[nodiscard]] bool is_loopback() const;

@@ -12,6 +12,7 @@
 #include "controller/controller_service.hpp"
 #include "controller/exit_code.hpp"
 #include "controller/remote_server.hpp"
+#include "controller/rtde_panel.hpp"
 #include "controller/run_archive.hpp"
 #include "controller/stop_signals.hpp"
 #include "viapoint/core/error.hpp"
@@ -89,6 +90,12 @@ int serve(const std::string& config_path) {
   const RemoteServer server(service, config);
   spdlog::info("\"{}\" is served at {}:{}{}", robot->name(), config.host, server.port(),
                config.tls ? ", to clients with a certificate" : "");
+
+  std::optional<RtdePanel> panel;
+  if (config.rtde) {
+    panel.emplace(host, *robot, *config.rtde, config.cycle);
+    spdlog::info("RTDE is served at {} port {}", config.rtde->address, panel->port());
+  }
 
   signals.wait();
   spdlog::info("stopping on the path");

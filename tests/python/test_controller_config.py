@@ -33,6 +33,12 @@ WRONG = {
     "tls: {authority: a.pem, certificate: b.pem}": '"key" is missing',
     "tls: {authority: a.pem, certificate: b.pem, key: c.key}": "cannot open: No such file",
     "logs: /nowhere/at/all": "the log cannot be written there",
+    "rtde: {port: 65536}": "rtde.port: is 65536; allowed are 0 to 65535",
+    "rtde: {port: 0.5}": "is no whole number",
+    "rtde: {address: localhost}": "no address in numbers",
+    "rtde: {address: 0.0.0.0}": "RTDE has neither passwords nor encryption",
+    "rtde: {address: 10.0.0.1, other_machines: 'yes'}": 'the only word for it is "allowed"',
+    "rtde: {ports: 1}": 'unknown key "ports"',
     "cycle: [": "is no YAML",
     "---": "holds 2 documents",
 }
