@@ -70,7 +70,7 @@ def test_a_motion_beyond_a_limit_fails_the_run_and_is_shown(
 def test_an_unknown_subject_is_refused(capsys: pytest.CaptureFixture[str]):
     with pytest.raises(SystemExit):
         run_bench.main(["speed"])
-    assert "no subject speed; there are tick, plan" in capsys.readouterr().err
+    assert "no subject speed; there are tick, commands, plan" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
