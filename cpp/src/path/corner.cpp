@@ -118,7 +118,26 @@ class CornerFit {
     // Written so that NaN is no room.
     if (!(most > kShortestCut)) return refuse("no room: a leg is too short for a corner");
     if (refuted) return refuse("no corner was proven to stay within the zone: stop at the point");
+    const Use least = ends_of(shape_of(kShortestCut));
+    if (least.angle / zone_.angle > least.size / zone_.size) {
+      Corner corner = refuse("the zone's angle is too small for a corner");
+      corner.angle_rules = true;
+      return corner;
+    }
     return refuse("the zone is too small for a corner");
+  }
+
+  /// How far the ends of a shape are from the corner.
+  Use ends_of(const CornerShape& shape) const {
+    Use use;
+    for (const JointVector& q : {legs_.at_cut(CornerLegs::kBefore, shape.cut_before()).q,
+                                 legs_.at_cut(CornerLegs::kAfter, shape.cut_after()).q}) {
+      use.size = std::max(use.size, zone_space_.distance(q, legs_.corner()));
+      if (zone_.bounds_angle()) {
+        use.angle = std::max(use.angle, tool_.angle(q, legs_.corner()));
+      }
+    }
+    return use;
   }
 
   /// Cuts as far back as the zone's radius reaches along each leg.

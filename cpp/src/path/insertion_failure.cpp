@@ -117,6 +117,52 @@ Problem too_few_joints(const CurveFollower& follower, const PathPoint& here, con
   return problem;
 }
 
+/// How many of the held coordinates' rates are independent of each other.
+Eigen::Index independent_rates(const CurveFollower& follower, const JointVector& q) {
+  constexpr double kDependent = 1e-9;
+  const Eigen::VectorXd values = follower.singular_values(q);
+  return (values.array() > kDependent * values[0]).count();
+}
+
+/// The most independent rates that the joints have anywhere.
+Eigen::Index controlled(const CurveFollower& follower, const JointVector& here) {
+  constexpr int kPlaces = 8;
+  std::mt19937 random(kProbeSeed);
+  std::uniform_real_distribution<double> angle(-kPi, kPi);
+  Eigen::Index most = independent_rates(follower, here);
+  for (int place = 0; place < kPlaces; ++place) {
+    JointVector q = here;
+    for (double& value : q) value = angle(random);
+    most = std::max(most, independent_rates(follower, q));
+  }
+  return most;
+}
+
+/// Of joints that are many enough, but never independent: those of a shoulder that turn about one
+/// point do not change its distance from what hangs on it.
+Problem dependent_joints(const CurveFollower& follower, Eigen::Index controlled, double share,
+                         const InsertionOptions& options) {
+  const bool by_wrist = options.hold == Hold::kWrist;
+  Problem problem;
+  problem.code = ErrorCode::kUncontrolled;
+  problem.value = static_cast<double>(controlled);
+  problem.limit = follower.coordinates();
+  const char* pattern =
+      by_wrist ? "the first %.0f joints of this arm, which are to hold the tool position while the "
+                 "others go straight, control only %.0f of its %.0f coordinates"
+               : "the %.0f joints of the arm control only %.0f of the %.0f coordinates to be held";
+  problem.message = format(pattern, follower.free_joints(), *problem.value, *problem.limit) +
+                    format(": beyond %.2f %% of the curve they cannot follow it", 100.0 * share);
+  if (by_wrist) {
+    problem.ways_out = {"orientation=\"least\", which all joints hold",
+                        "orientation=\"free\", where only the tool position counts"};
+  } else {
+    problem.ways_out = {"ask only for the tool position"};
+  }
+  problem.ways_out.emplace_back("use a joint move to the goal");
+  return problem;
+}
+
 Problem out_of_reach(const Ahead& ahead, double share, const InsertionOptions& options) {
   Problem problem;
   problem.code = ErrorCode::kUnreachable;
@@ -165,6 +211,9 @@ void throw_insertion_failure(const CurveFollower& follower, const TaskCurve& cur
   } else if (follower.free_joints() < follower.coordinates() &&
              smallest > kClearOfSingularity * values[0]) {
     problem = too_few_joints(follower, here, ahead, share);
+  } else if (const Eigen::Index most = controlled(follower, here.q);
+             most < std::min(follower.free_joints(), follower.coordinates())) {
+    problem = dependent_joints(follower, most, share, options);
   } else {
     problem = out_of_reach(ahead, share, options);
   }

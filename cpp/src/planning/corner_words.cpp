@@ -21,6 +21,7 @@ constexpr std::array kAdvice{
     Advice{"joint limits", "turn the corner farther away from the limit, or on another branch"},
     Advice{"quicker", "a larger zone"},
     Advice{"tool changes", "change the tool at a move with zone=\"fine\""},
+    Advice{"angle is too small", "a larger angle of the zone"},
     Advice{"too small", "a larger zone"},
     Advice{"no size", "a zone above zero"},
     Advice{"no tool", "zone=joint_deviation(rad)"},

@@ -1,178 +1,17 @@
 #include "trajectory/path_timing_grid.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
-#include <span>
 #include <utility>
 
-#include "trajectory/path_timing_tool.hpp"
+#include "trajectory/path_timing_sweep.hpp"
 
 namespace viapoint::path_timing {
 namespace {
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
-/// Where a stretch is sampled, as shares of its length. On a straight one all that happens does so
-/// near its ends, however long it is.
-constexpr std::array<double, 15> kStraightPlaces{
-    0.0,     1.0 / 128, 1.0 / 64,  1.0 / 32,  1.0 / 16,  1.0 / 8,     1.0 / 4, 1.0 / 2,
-    3.0 / 4, 7.0 / 8,   15.0 / 16, 31.0 / 32, 63.0 / 64, 127.0 / 128, 1.0};
-constexpr std::array<double, 5> kCurvedPlaces{0.0, 0.25, 0.5, 0.75, 1.0};
-
-std::span<const double> places(const Stretch& stretch) {
-  if (stretch.straight || stretch.tool != nullptr) return kStraightPlaces;
-  return kCurvedPlaces;
-}
-
-/// Growth of z = ṡ^{3/2} with s over that of a ramp from rest, √(9/2 s⃛): the rest of the jerk is
-/// spent where acceleration turns over.
-constexpr double kGrowth = 0.5;
 /// Length of a cell over w.
 constexpr double kCellShare = 0.8;
-
-/// What the limits allow at one place, by the simplest of arguments.
-struct Sample {
-  double s;
-  double z;  ///< ṡ^{3/2} at which a constant speed keeps every limit; after the sweeps, reachable
-  double change;           ///< |s̈| where q'' does not count
-  double jerk;             ///< |s⃛| where q'' and q''' do not count
-  double growth = 0.0;     ///< of z with s, likewise
-  double width = 0.0;      ///< w
-  double top = kInfinite;  ///< z that a steady ceiling on the speed allows, where that rules
-
-  [[nodiscard]] bool cruises() const { return z >= top; }
-};
-
-struct Samples {
-  std::vector<Sample> all;
-  std::vector<size_t> first;  ///< of each stretch, and the end
-
-  [[nodiscard]] const Sample* of(size_t stretch) const { return &all[first[stretch]]; }
-  [[nodiscard]] size_t parts(size_t stretch) const {
-    return first[stretch + 1] - first[stretch] - 1;
-  }
-};
-
-/// x^{3/4}.
-double three_quarters(double x) {
-  const double root = std::sqrt(x);
-  return root * std::sqrt(root);
-}
-
-Sample straight_sample(const Stretch& stretch, double s) {
-  const double v = stretch.rate_limit;
-  Sample sample{s, v * std::sqrt(v), stretch.change_limit, stretch.jerk_limit};
-  sample.top = sample.z;
-  return sample;
-}
-
-Sample curved_sample(const Course& course, size_t index, double s) {
-  const Stretch& stretch = course.stretches()[index];
-  JointRates rates;
-  course.rates(index, s, rates);
-  double v = 0.0, a = 0.0, j = 0.0, bend = 0.0, twist = 0.0, steady = kInfinite;
-  for (size_t i = 0; i < static_cast<size_t>(course.joints()); ++i) {
-    v = std::max(v, std::abs(rates.velocity[i]));
-    a = std::max(a, std::abs(rates.acceleration1[i]));
-    j = std::max(j, std::abs(rates.jerk1[i]));
-    bend = std::max(bend, std::abs(rates.acceleration2[i]));
-    twist = std::max(twist, std::abs(rates.jerk3[i]));
-  }
-  if (stretch.tool != nullptr) {
-    const ToolPlace tool = tool_at(stretch, s);
-    v = std::max(v, tool.velocity);
-    steady = tool.velocity;
-    for (const ToolCone& cone : tool.cones) {
-      a = std::max(a, cone.slope);
-      bend = std::max(bend, std::hypot(cone.b, cone.normal));
-    }
-  }
-  const double z =
-      std::min({1.0 / (v * std::sqrt(v)), three_quarters(1.0 / bend), 1.0 / std::sqrt(twist)});
-  Sample sample{s, z, 1.0 / a, 1.0 / j};
-  if (v == steady && z == 1.0 / (v * std::sqrt(v))) sample.top = z;
-  return sample;
-}
-
-/// z after `distance` from one place to another.
-double reachable(const Sample& from, const Sample& to, double start, double distance) {
-  const double z = start + std::min(from.growth, to.growth) * distance;
-  const double by_change = 2.0 * std::min(from.change, to.change) * distance;
-  const double rate2 = z * std::cbrt(z), start2 = start * std::cbrt(start);
-  return rate2 <= start2 + by_change ? z : three_quarters(start2 + by_change);
-}
-
-/// w of every sample. On a straight stretch at its highest speed, and at the highest speed of the
-/// tool, nothing happens but near where it gets there: cells grow with the distance from it.
-void set_widths(const Course& course, Samples& samples) {
-  constexpr double kCruise = 0.5;
-  for (Sample& sample : samples.all) sample.width = kGrowth * sample.z / sample.growth;
-  for (size_t k = 0; k < course.stretches().size(); ++k) {
-    const size_t begin = samples.first[k], end = samples.first[k + 1];
-    for (size_t first = begin; first < end; ++first) {
-      if (!samples.all[first].cruises()) continue;
-      size_t last = first;
-      while (last + 1 < end && samples.all[last + 1].cruises()) ++last;
-      for (size_t i = first; i <= last; ++i) {
-        Sample& sample = samples.all[i];
-        const double from = samples.all[first].s, to = samples.all[last].s;
-        sample.width += kCruise * std::min(sample.s - from, to - sample.s);
-      }
-      first = last;
-    }
-  }
-}
-
-Samples sweep(const Course& course) {
-  Samples samples;
-  const auto& stretches = course.stretches();
-  samples.first.reserve(stretches.size() + 1);
-  samples.all.reserve(stretches.size() * kStraightPlaces.size());
-  double least_z = kInfinite, least_change = kInfinite, least_jerk = kInfinite;
-  for (size_t k = 0; k < stretches.size(); ++k) {
-    samples.first.push_back(samples.all.size());
-    const Stretch& stretch = stretches[k];
-    for (const double place : places(stretch)) {
-      const double s = stretch.length * place;
-      const Sample sample =
-          stretch.straight ? straight_sample(stretch, s) : curved_sample(course, k, s);
-      least_z = std::min(least_z, sample.z);
-      least_change = std::min(least_change, sample.change);
-      least_jerk = std::min(least_jerk, sample.jerk);
-      samples.all.push_back(sample);
-    }
-  }
-  samples.first.push_back(samples.all.size());
-  // Where q' vanishes nothing bounds the speed: any ceiling will do, this far above the rest.
-  constexpr double kDecades = 1e6;
-  for (Sample& sample : samples.all) {
-    sample.z = std::min(sample.z, kDecades * least_z);
-    sample.change = std::min(sample.change, kDecades * least_change);
-    sample.jerk = std::min(sample.jerk, kDecades * least_jerk);
-    sample.growth = kGrowth * std::sqrt(4.5 * sample.jerk);
-  }
-  auto& all = samples.all;
-  all.front().z = all.back().z = 0.0;
-  const auto gear_of_z = [&](size_t k) { return stretches[k].gear * std::sqrt(stretches[k].gear); };
-  for (size_t k = 0; k < stretches.size(); ++k) {
-    const size_t begin = samples.first[k], end = samples.first[k + 1];
-    if (k > 0) all[begin].z = std::min(all[begin].z, gear_of_z(k) * all[begin - 1].z);
-    for (size_t i = begin + 1; i < end; ++i) {
-      const double distance = all[i].s - all[i - 1].s;
-      all[i].z = std::min(all[i].z, reachable(all[i - 1], all[i], all[i - 1].z, distance));
-    }
-  }
-  for (size_t k = stretches.size(); k-- > 0;) {
-    const size_t begin = samples.first[k], end = samples.first[k + 1];
-    for (size_t i = end - 1; i-- > begin;) {
-      const double distance = all[i + 1].s - all[i].s;
-      all[i].z = std::min(all[i].z, reachable(all[i + 1], all[i], all[i + 1].z, distance));
-    }
-    if (k > 0) all[begin - 1].z = std::min(all[begin - 1].z, all[begin].z / gear_of_z(k));
-  }
-  set_widths(course, samples);
-  return samples;
-}
 
 /// Length of the ramp out of rest: constant jerk is best up to there.
 double ramp_length(const Samples& samples, bool from_end) {
@@ -207,7 +46,7 @@ Between find(const Samples& samples, size_t stretch, double s) {
 void cut(const Samples& samples, size_t stretch, double from, double to, double floor, int least,
          int most, std::vector<Cell>& cells) {
   const Sample* first = samples.of(stretch);
-  std::array<double, kStraightPlaces.size() + 2> s{}, w{}, sum{};
+  std::array<double, kMostPlaces + 2> s{}, w{}, sum{};
   size_t count = 0;
   const auto push = [&](double x) {
     const auto [before, share] = find(samples, stretch, x);
@@ -273,6 +112,13 @@ std::vector<double> guess(const Samples& samples, const std::vector<Cell>& cells
   return z;
 }
 
+/// How few and how many cells a stretch gets. A ceiling of the tool's speed is only followed, and
+/// its acceleration only kept, by more than one or two.
+std::pair<int, int> cells_of(const Stretch& stretch) {
+  if (stretch.straight) return {1, 64};
+  return stretch.tool != nullptr ? std::pair(4, 64) : std::pair(2, 16);
+}
+
 }  // namespace
 
 Grid make_grid(const Course& course) {
@@ -292,8 +138,8 @@ Grid make_grid(const Course& course) {
       from = start;
     }
     if (k + 1 == count) to -= end;
-    cut(samples, k, from, to, floor, stretch.straight ? 1 : 2,
-        stretch.straight || stretch.tool != nullptr ? 64 : 16, grid.cells);
+    const auto [fewest, most] = cells_of(stretch);
+    cut(samples, k, from, to, floor, fewest, most, grid.cells);
     if (k + 1 == count) grid.cells.push_back({k, to, stretch.length});
     grid.cells[begin].gear = stretch.gear;
   }

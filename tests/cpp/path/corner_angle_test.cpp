@@ -152,6 +152,36 @@ TEST(ZoneWithAngle, IsTheSameAsWithoutWhereTheAngleIsWide) {
   }
 }
 
+TEST(ZoneWithAngle, SaysWhetherItsAngleOrItsSizeLeavesNoCorner) {
+  const ForwardKinematics arm = testing::puma560();
+  for (const ZoneKind kind : {ZoneKind::kRadius, ZoneKind::kDeviation}) {
+    unsigned seen = 0;
+    for (unsigned seed = 0; seed < 40; ++seed) {
+      SCOPED_TRACE(seed);
+      const auto legs = tool_corner(arm, seed);
+      if (!legs) continue;
+      ++seen;
+      const auto round = [&](double size, double angle) {
+        Zone zone{kind, size};
+        zone.angle = angle;
+        return round_corner(&arm, legs->before, legs->after, zone, legs->before.length(),
+                            legs->after.length());
+      };
+      const Corner by_angle = round(0.01, 1e-10);
+      EXPECT_FALSE(by_angle.possible);
+      EXPECT_TRUE(by_angle.angle_rules);
+      EXPECT_EQ(by_angle.reason, "the zone's angle is too small for a corner");
+      const Corner by_size = round(1e-10, 0.5);
+      EXPECT_FALSE(by_size.possible);
+      EXPECT_FALSE(by_size.angle_rules);
+      EXPECT_EQ(by_size.reason, "the zone is too small for a corner");
+      EXPECT_EQ(round(1e-10, 1e-13).reason, by_angle.reason);
+      EXPECT_EQ(round(1e-13, 1e-10).reason, by_size.reason);
+    }
+    EXPECT_GT(seen, 10U);
+  }
+}
+
 TEST(ZoneWithAngle, MeansNothingToAnArmWithoutATool) {
   JointPath before, after;
   before.append(JointPiece::line(JointVector::Zero(2), JointVector::Unit(2, 0), 1.0));

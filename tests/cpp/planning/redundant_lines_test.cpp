@@ -138,5 +138,29 @@ INSTANTIATE_TEST_SUITE_P(Arms, SevenJoints,
                          ::testing::Values(testing::kLineArms[2], testing::kLineArms[3]),
                          [](const auto& of) { return std::string(of.param.name); });
 
+TEST(SevenJointWrist, CannotBeInterpolatedWhereTheFirstThreeJointsTurnAboutOnePoint) {
+  for (const char* name : {"panda", "iiwa14"}) {
+    SCOPED_TRACE(name);
+    const RobotPtr arm = testing_planner::robot(name);
+    const JointVector home = testing_planner::degrees({0, 20, 0, -100, 0, 80, 0});
+    Pose goal = arm->forward().pose(home);
+    goal.translation().x() += 0.05;
+    Script script(*arm, home);
+    script.movel(goal, {}, Orientation::kWrist);
+    const Report report = MotionPlanner(arm).check(script.program());
+    ASSERT_EQ(report.problems.size(), 1U) << report.describe();
+    const Problem& problem = report.problems.front();
+    EXPECT_EQ(problem.code, ErrorCode::kUncontrolled) << problem.describe();
+    EXPECT_NE(problem.message.find("control only 2 of its 3 coordinates"), std::string::npos)
+        << problem.message;
+    EXPECT_EQ(problem.value, 2.0);
+    EXPECT_NE(problem.ways_out[0].find("least"), std::string::npos);
+    // The first way out works.
+    Script least(*arm, home);
+    least.movel(goal);
+    EXPECT_TRUE(MotionPlanner(arm).check(least.program()).ok());
+  }
+}
+
 }  // namespace
 }  // namespace viapoint

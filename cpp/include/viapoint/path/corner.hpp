@@ -22,7 +22,7 @@ struct Corner {
   JointPiece blend;          ///< kind kBlend; from leg_before.length() - cut_before
   double used = 0.0;         ///< size used, in the zone's own unit, proven
   double used_angle = 0.0;   ///< the same of its angle [rad]; 0 for a zone without
-  bool angle_rules = false;  ///< its angle is used up before its size
+  bool angle_rules = false;  ///< its angle is used up before its size, or leaves no corner at all
   double tool_deviation = 0.0;  ///< proven largest distance, both ways, from the legs at the tool
                                 ///< [m]; 0 for an arm without kinematics
 };

@@ -52,9 +52,10 @@ struct Insertion {
 ///   kJointLimit, kCouplingLimit (first place where a limit is left), kSingular (the joints cannot
 ///   follow: rate beyond all bounds), kUnreachable (the curve leaves the workspace, or leads so far
 ///   away that it must: then value is the goal's distance, limit the reach), kUncontrolled
-///   (the arm has too few joints to hold the coordinates; names them), kZeroLength, kDiscontinuous
-///   (start is not on the curve), kBadArgument (also for a curve that takes more than 20000 pieces,
-///   or far more looking for their proof than pieces take: the work is counted)
+///   (the arm has too few joints to hold the coordinates, and names them, or joints that together
+///   never move all of them), kZeroLength, kDiscontinuous (start is not on the curve), kBadArgument
+///   (also for a curve that takes more than 20000 pieces, or far more looking for their proof than
+///   pieces take: the work is counted)
 /// For a limit, `value` is the farthest that the joint would go along the rest of the curve,
 /// followed until the limit is passed by 2π [rad, m], or for 1000 pieces more. Where the tool
 /// hardly tells how joints turn (a singular wrist), a piece counts only when no free revolute joint

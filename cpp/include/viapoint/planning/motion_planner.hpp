@@ -21,7 +21,7 @@ struct CornerOutcome {
   bool stopped = false;      ///< the arm stops at the point
   double used = 0.0;         ///< size really used, in the zone's own unit
   double used_angle = 0.0;   ///< the same of the zone's angle [rad]; 0 for a zone without
-  bool angle_rules = false;  ///< the angle was used up before the size
+  bool angle_rules = false;  ///< the angle was used up before the size, or left no corner at all
   /// The move whose straight leg the point was merged into: it lies so near that leg, by `used`,
   /// that it makes no corner.
   std::optional<int> merged_into;
