@@ -74,3 +74,16 @@ def test_an_input_that_is_none_is_refused(arm):
             use()
     with pytest.raises(errors.BadArgumentError, match="value"):
         arm.set_input(1, 1)
+
+
+def test_an_arm_that_an_input_has_paused_may_be_jogged(arm):
+    program = vp.Program(arm.robot, start=[0, 0], scale=0.3).movej([1.0, 1.0])
+    job = arm.run(program, wait=False)
+    job.on_input(3, True, "pause")
+    arm.set_input(3, True)
+    assert reached(lambda: job.state == "paused")
+    arm.jog([0.1, 0.0])
+    assert reached(lambda: not arm.jogging)
+    job.resume()
+    assert job.wait(30.0)
+    assert job.state == "finished"

@@ -148,6 +148,8 @@ void CycleRunner::take_wish() noexcept VIAPOINT_NONBLOCKING {
   if (wish.number == wish_.number) return;
   wish_ = wish;
   interpolator_.wish(wish.wish);
+  motion_->may_be_jogged.store(false, std::memory_order_relaxed);
+  motion_->acted_on.store(wish.number, std::memory_order_release);
 }
 
 void CycleRunner::take_link() noexcept VIAPOINT_NONBLOCKING {
@@ -230,6 +232,7 @@ void CycleRunner::finish() noexcept VIAPOINT_NONBLOCKING {
     arriving_ = true;
     return;
   }
+  motion_->may_be_jogged.store(interpolator_.may_be_jogged(), std::memory_order_relaxed);
   motion_->state.store(state, std::memory_order_release);
   if (!rests) return;
   // Before the motion goes back: who sees the stop's end sees that the drive is to be released.

@@ -54,11 +54,16 @@ void Interpolator::begin(const Trajectory& motion, bool open) noexcept VIAPOINT_
 
 LinkFate Interpolator::lengthen(const MotionLink& link) noexcept VIAPOINT_NONBLOCKING {
   if (motion_ == nullptr) return LinkFate::kTooLate;
-  if (direction_ == Direction::kBackward || piece_ < link.dropped) return LinkFate::kNotYet;
+  // Who is about to go back may still do so, as far as the present motion reaches.
+  const bool goes_back =
+      direction_ == Direction::kBackward || (wish_ == Wish::kBackward && !link.begins_at_rest);
+  if (goes_back || piece_ < link.dropped) return LinkFate::kNotYet;
   if (!waits_ && governor_.settled_at(now_) > link.same_until) {
     return now_.tau > link.same_until ? LinkFate::kTooLate : LinkFate::kNotYet;
   }
   if (waits_ && now_.tau > link.same_until) return LinkFate::kTooLate;
+  // At its end the arm rests, whatever rate it came with; what follows begins anew.
+  const bool rests = waits_ || now_.tau >= motion_->duration();
   if (link.dropped > 0) {
     const OutputEffect& passed = motion_->outputs_after(link.dropped - 1);
     outputs_before_ = (outputs_before_ & ~passed.changed) | passed.on;
@@ -71,7 +76,7 @@ LinkFate Interpolator::lengthen(const MotionLink& link) noexcept VIAPOINT_NONBLO
   fresh_ -= link.shift;
   farthest_piece_ -= link.dropped;
   lookahead_.lengthen(*motion_, link.same_until, link.shift, link.dropped);
-  if (waits_) {
+  if (rests) {
     waits_ = false;
     rest_at(now_.tau);
     fresh_ = now_.tau;
@@ -103,15 +108,17 @@ void Interpolator::abandon() noexcept VIAPOINT_NONBLOCKING {
 }
 
 void Interpolator::jog(const JointVector& velocity) noexcept VIAPOINT_NONBLOCKING {
-  const bool is_free = motion_ == nullptr
-                           ? run_state_ != RunState::kFault
-                           : wish_ == Wish::kPause && (run_state_ == RunState::kPaused ||
-                                                       run_state_ == RunState::kJogging);
-  if (is_free) jog_.wish(velocity, jog_cycles_, position_);
+  if (may_be_jogged()) jog_.wish(velocity, jog_cycles_, position_);
 }
 
 void Interpolator::stop_jog() noexcept VIAPOINT_NONBLOCKING {
   if (jog_.active()) jog_.wish(JointVector::Zero(position_.size()), 0, position_);
+}
+
+bool Interpolator::may_be_jogged() const noexcept {
+  if (motion_ == nullptr) return run_state_ != RunState::kFault;
+  return wish_ == Wish::kPause &&
+         (run_state_ == RunState::kPaused || run_state_ == RunState::kJogging);
 }
 
 bool Interpolator::is_stop() const noexcept {

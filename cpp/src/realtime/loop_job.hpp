@@ -51,11 +51,13 @@ class LoopJob final : public OpenJob {
 
   /// What crosses the real-time boundary.
   [[nodiscard]] QueuedMotion* motion() { return &motion_; }
-  /// True where the arm may be jogged meanwhile: it was paused and rests.
+  /// True where the arm may be jogged meanwhile: it was paused, by whomever, and rests. A pause
+  /// that the tick has not seen yet comes before the jog.
   [[nodiscard]] bool may_be_jogged() const {
+    const NumberedWish wish = motion_.wish;
+    if (wish.number == motion_.acted_on) return motion_.may_be_jogged;
     const RunState state = motion_.state;
-    return motion_.wish.load().wish == Wish::kPause &&
-           (state == RunState::kPaused || state == RunState::kJogging);
+    return wish.wish == Wish::kPause && (state == RunState::kPaused || state == RunState::kJogging);
   }
   /// True once the motion has come back and its log is complete.
   [[nodiscard]] bool ended() const;

@@ -144,6 +144,63 @@ TEST(MotionLink, EndsAtRestAndWaitsForMore) {
   EXPECT_TRUE(setpoint.q.isApprox(goal, 1e-12));
 }
 
+TEST(MotionLink, GoesOnFromRestWhereItComesInTheCycleOfTheEnd) {
+  for (unsigned seed = 0; seed < 20U; ++seed) {
+    SCOPED_TRACE(seed);
+    Handover run(seed);
+    const Trajectory& whole = run.motion.trajectory;
+    Setpoint setpoint;
+    for (int k = 0; k < 100'000 && run.interpolator.settled_time() < whole.duration(); ++k) {
+      run.interpolator.tick(setpoint);
+      ASSERT_EQ(run.guard.pass(setpoint), Guard::Verdict::kPass);
+    }
+    ASSERT_EQ(run.interpolator.state(), RunState::kRunning) << "its end comes next";
+    const JointVector end = whole.at(whole.duration()).q;
+    std::vector<TrajectoryPiece> pieces;
+    append_straight(pieces, end, JointVector::Constant(end.size(), 0.1), run.motion.limits, 7);
+    run.link = run.chain.lengthen(Trajectory(pieces, run.motion.limits), whole.duration(),
+                                  run.interpolator.nominal_time());
+    run.decide();
+    ASSERT_EQ(run.taken, 1);
+    run.interpolator.close();
+    for (int k = 0; k < 100'000 && run.interpolator.active(); ++k) {
+      run.interpolator.tick(setpoint);
+      ASSERT_EQ(run.guard.pass(setpoint), Guard::Verdict::kPass) << text_of(run.guard.breach());
+    }
+    EXPECT_EQ(run.interpolator.state(), RunState::kFinished);
+  }
+}
+
+/// A motion that does not begin at rest any more would end the way back at speed.
+TEST(MotionLink, LeavesTheWayBackToAnArmThatIsAboutToGoBack) {
+  int tried = 0;
+  for (unsigned seed = 0; seed < 20U; ++seed) {
+    SCOPED_TRACE(seed);
+    Handover run(seed);
+    const Trajectory& whole = run.motion.trajectory;
+    Setpoint setpoint;
+    const auto tick = [&] {
+      run.interpolator.tick(setpoint);
+      ASSERT_EQ(run.guard.pass(setpoint), Guard::Verdict::kPass) << text_of(run.guard.breach());
+    };
+    const double begin = whole.start_of(1);
+    for (int k = 0; k < 1000 && run.interpolator.nominal_time() <= begin; ++k) tick();
+    if (whole.at(begin).qd.isZero(1e-6)) continue;
+    ++tried;
+    const Trajectory later = whole.continued(1, whole.duration(), rest_of(run.motion, 0));
+    const MotionLink link{&later, whole.duration(), begin, 1, false};
+    run.interpolator.wish(Wish::kBackward);
+    ASSERT_EQ(run.interpolator.lengthen(link), LinkFate::kNotYet);
+    for (int k = 0; k < 1000 && run.interpolator.state() != RunState::kPaused; ++k) {
+      tick();
+      ASSERT_EQ(run.interpolator.lengthen(link), LinkFate::kNotYet);
+    }
+    ASSERT_EQ(run.interpolator.state(), RunState::kPaused);
+    EXPECT_EQ(run.interpolator.nominal_time(), 0.0);
+  }
+  EXPECT_GT(tried, 3);
+}
+
 TEST(MotionLink, IsRefusedWhereItsProofDoesNotHold) {
   Handover run(3);
   std::vector<TrajectoryPiece> pieces;

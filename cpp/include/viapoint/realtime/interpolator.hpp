@@ -80,6 +80,8 @@ class Interpolator {
   /// from the jog under way; zero comes to rest at once. Override does not act on it. Ignored while
   /// a motion is active, unless it rests after a wish to pause, and after a fault.
   void jog(const JointVector& velocity) noexcept VIAPOINT_NONBLOCKING;
+  /// True where jog() is not ignored.
+  [[nodiscard]] bool may_be_jogged() const noexcept;
   /// Brings a jog to rest at once.
   void stop_jog() noexcept VIAPOINT_NONBLOCKING;
   /// True until a jog has come to rest.
