@@ -23,8 +23,9 @@ class StreamHandle {
       : joints_(loop.joints),
         stream_(
             robot.robot, program,
-            [to = loop.open()](std::shared_ptr<const Trajectory> first) {
-              return to->follow(std::move(first));
+            // An arm that is disconnected is not held by its streams.
+            [to = std::weak_ptr<Loop>(loop.open())](std::shared_ptr<const Trajectory> first) {
+              return HandleOf<Loop>{to.lock(), 0, nullptr}.open()->follow(std::move(first));
             },
             margin) {}
 
@@ -56,6 +57,11 @@ class StreamHandle {
     const Release release;
     const std::lock_guard lock(mutex_);
     return stream_.steps_ahead();
+  }
+  [[nodiscard]] bool wants_steps() {
+    const Release release;
+    const std::lock_guard lock(mutex_);
+    return stream_.wants_steps();
   }
   [[nodiscard]] std::optional<JobHandle> job() {
     const Release release;
@@ -115,6 +121,8 @@ void bind_motion_stream(py::module_& m) {
       .def("hand_over", &StreamHandle::hand_over, "Hand over what is due.")
       .def_property_readonly("steps_ahead", &StreamHandle::steps_ahead,
                              "Steps told that the arm has not begun.")
+      .def_property_readonly("wants_steps", &StreamHandle::wants_steps,
+                             "What was told gives the arm no motion more.")
       .def_property_readonly("job", &StreamHandle::job, "The run, once it has begun.")
       .def_property_readonly("late_count", &StreamHandle::late_count)
       .def_property_readonly("late", &StreamHandle::late,

@@ -66,7 +66,7 @@ class Arm:
         self._loop = loop
         self._cycle = cycle
         self._jobs: list[Job] = []
-        self._streams: list[Stream] = []
+        self._stream: Stream | None = None
 
     def __repr__(self) -> str:
         """Robot and state."""
@@ -84,8 +84,8 @@ class Arm:
     ) -> None:
         """Wait for the run under way, or on an exception bring it to rest; then disconnect."""
         try:
-            for stream in self._streams:
-                stream.close(stop=kind is not None)
+            if self._stream is not None:
+                self._stream.close(stop=kind is not None)
             for job in self._jobs:
                 job.finish(stop=kind is not None)
         finally:
@@ -93,7 +93,11 @@ class Arm:
 
     def close(self) -> None:
         """Disconnect; a run under way is brought to rest on its path first, a jog as it can."""
-        self._loop.close()
+        try:
+            if self._stream is not None:
+                self._stream.close(stop=True)
+        finally:
+            self._loop.close()
 
     def run(self, program: Program | Motion, wait: bool = True) -> Job:
         """Run a program.
@@ -190,15 +194,19 @@ class Arm:
         BadArgumentError
             By the argument's name; or the arm is one that no stream can run on.
         BusyError
-            A run is under way.
+            A run or another stream is under way.
         """
         loop = self._own_loop()
         limit = integer(ahead, "ahead", 3, 1000)
+        if self._stream is not None and self._stream.ended:
+            self._stream.close(stop=True)
+        elif self._stream is not None:
+            raise BusyError("Another stream is under way.", ways_out=["Close it: stream.close()."])
         if isinstance(loop, VirtualLoop):
             loop.see_to_end()
         if loop.busy:
             raise BusyError("A run is under way.", ways_out=["Wait for its end."])
-        stream = Stream(
+        self._stream = Stream(
             self.robot,
             loop,
             self._cycle,
@@ -218,8 +226,7 @@ class Arm:
                 "tool": tool,
             },
         )
-        self._streams.append(stream)
-        return stream
+        return self._stream
 
     def jog(self, velocity: ArrayLike) -> None:
         """Turn the joints at `velocity` for as long as this is called again within 250 ms.

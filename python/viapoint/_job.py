@@ -96,9 +96,13 @@ class Job:
     def __repr__(self) -> str:
         """Name, state and progress."""
         return (
-            f"<Job {self.motion.program.name!r}, {self.state}, "
-            f"{self.nominal_time:.3f} of {self.duration:.3f} s>"
+            f"<Job {self.name!r}, {self.state}, {self.nominal_time:.3f} of {self.duration:.3f} s>"
         )
+
+    @property
+    def name(self) -> str:
+        """Name of the program that runs."""
+        return self.motion.program.name
 
     @property
     def state(self) -> str:
@@ -280,10 +284,14 @@ class Job:
             return
         if stop:
             self.stop()
-        # A pause may be a cycle old, and an override of 0 reached only later: look again and again.
+        # A pause may be a cycle old, and an override of 0 reached only later: look again and again,
+        # and twice, for the arm also rests for a moment between a jog and the way back from it.
+        was_paused = False
         while not self.wait(_SLICE):
-            if self.state in ("pausing", "paused"):
+            is_paused = self.state in ("pausing", "paused")
+            if is_paused and was_paused:
                 self.stop()
+            was_paused = is_paused
 
     def _come_to_rest(self) -> None:
         """Stop and wait; a fault meanwhile is the drive's, which is then at rest, too."""

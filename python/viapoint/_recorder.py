@@ -98,10 +98,9 @@ class ProgressRecorder(Recorder):
             )
             self._bar.start()
         if id(job) not in self._tasks:
-            self._tasks[id(job)] = self._bar.add_task(
-                escape(job.motion.program.name), total=job.duration
-            )
-        self._bar.update(self._tasks[id(job)], completed=job.nominal_time)
+            self._tasks[id(job)] = self._bar.add_task(escape(job.name), total=job.duration)
+        task = self._tasks[id(job)]
+        self._bar.update(task, completed=job.nominal_time, total=job.duration)
 
     def ended(self, job: Job) -> None:
         """Leave the bar where the job ended."""

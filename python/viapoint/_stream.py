@@ -73,9 +73,14 @@ class StreamJob(Job):
     def __repr__(self) -> str:
         """Name, state and progress."""
         return (
-            f"<StreamJob {self._stream.name!r}, {self.state}, "
+            f"<StreamJob {self.name!r}, {self.state}, "
             f"{self.nominal_time:.3f} of {self.duration:.3f} s so far>"
         )
+
+    @property
+    def name(self) -> str:
+        """Name of the stream."""
+        return self._stream.name
 
     @property
     def log(self) -> RunLog:
@@ -120,15 +125,16 @@ class Stream(Program):
             margin=5 * period if is_virtual else _MARGIN,
         )
         self._job: StreamJob | None = None
-        self._corners: list[_core.Corner] = []
-        self._warnings: list[_core.Problem] = []
         self._trouble: BaseException | None = None
         self._closed = threading.Event()
         self._is_open = True
         if isinstance(loop, VirtualLoop):
             loop.feed = self._stream.hand_over
         else:
-            threading.Thread(target=self._keep_on, name="viapoint-stream", daemon=True).start()
+            self._thread = threading.Thread(
+                target=self._keep_on, name="viapoint-stream", daemon=True
+            )
+            self._thread.start()
 
     def __repr__(self) -> str:
         """Name, robot and number of steps."""
@@ -194,12 +200,18 @@ class Stream(Program):
         """How many steps came late."""
         return self._stream.late_count
 
+    @property
+    def ended(self) -> bool:
+        """True once no step can follow: the stream was closed, or its run is over."""
+        core = self._stream.job
+        return self._closed.is_set() or (core is not None and core.state in ENDED)
+
     def take_corners(self) -> list[_core.Corner]:
-        """Return what became of the zones decided since the last call."""
+        """Return what became of the zones decided since the last call, the newest 1000."""
         return self._stream.take_corners()
 
     def take_warnings(self) -> Report:
-        """Return the warnings met since the last call."""
+        """Return the warnings met since the last call, the newest 1000."""
         return Report(self._stream.take_warnings())
 
     def close(self, *, stop: bool = False) -> None:
@@ -219,17 +231,29 @@ class Stream(Program):
         """
         if self._closed.is_set():
             return
+        is_told = False
         try:
-            if not stop:
+            if stop:
+                self._hand_over_no_more()
+            else:
                 self._stream.end()
-            if (job := self._begun) is not None:
-                job.finish(stop=stop)
+                is_told = True
         finally:
-            self._closed.set()
-            if isinstance(self._loop, VirtualLoop):
-                self._loop.feed = None
+            try:
+                if (job := self._begun) is not None:
+                    job.finish(stop=not is_told)
+            finally:
+                self._hand_over_no_more()
         if self._trouble is not None and not stop:
             raise self._trouble
+
+    def _hand_over_no_more(self) -> None:
+        """From now on nothing new begins."""
+        self._closed.set()
+        if isinstance(self._loop, VirtualLoop):
+            self._loop.feed = None
+        else:
+            self._thread.join()
 
     def check(self) -> Report:
         """Refuse: a stream is checked step by step as it is told."""
@@ -260,6 +284,10 @@ class Stream(Program):
                     ways_out=["Begin another stream where the arm rests."],
                 )
             if self._stream.steps_ahead < self._ahead:
+                return
+            # Steps that move nothing leave the arm waiting for others, however many they are.
+            self._stream.hand_over()
+            if self._stream.wants_steps:
                 return
             if not isinstance(self._loop, VirtualLoop):
                 time.sleep(_ROOM)

@@ -177,6 +177,18 @@ def test_two_runs_of_one_name_have_files_of_their_own(tmp_path):
     assert {path.stem for path in (tmp_path / "out").glob("*.csv")} == {"job_p", "job_p_2"}
 
 
+def test_a_stream_runs_as_a_script_of_its_own(tmp_path):
+    text = """
+        import viapoint as vp
+        with vp.connect("sim://two_link") as arm, arm.stream() as stream:
+            stream.movej([0.1, 0.1])
+        print("it", stream.job.state)
+    """
+    result = call("run", write(tmp_path / "job.py", text))
+    assert result.exit_code == 0, result.output
+    assert "it finished" in result.output
+
+
 def test_a_missing_script_is_named():
     done = _command("run", "none.py")
     assert done.returncode == 1

@@ -212,6 +212,7 @@ def test_thousands_of_moves_are_dropped_as_they_pass(in_virtual_time):
                 assert len(stream) == 0
         assert stream.job.state == "finished"
         assert stream.late_count == 0
+        assert len(stream.take_corners()) == 1000
         # Longer than the loop's ring of records, and longer than what is kept of the way.
         assert stream.job.report.cycles > 4096
 
@@ -223,3 +224,78 @@ def test_dense_points_do_not_wait_for_ones_to_come(arm):
             stream.movej([0.005 * k, 0.0, 0.0])
     assert stream.job.state == "finished"
     np.testing.assert_allclose(arm.joints, [0.2, 0.0, 0.0], atol=1e-9)
+
+
+def test_steps_that_move_nothing_do_not_wait_for_the_arm(arm):
+    with arm.stream(ahead=3, zone=vp.joint_deviation(0.01)) as stream:
+        for _ in range(6):
+            stream.wait(0.0)
+        stream.movej([0.1] * 3)
+        for output in range(6):
+            stream.set_do(output, True)
+        stream.movej([0.2] * 3)
+    assert stream.job.state == "finished"
+    assert stream.job.log.outputs[-1] == 0b111111
+
+
+def test_nothing_moves_after_a_motion_that_could_not_begin(arm):
+    stream = arm.stream(start=[0.5] * 3)
+    stream.movej([0.0] * 3).wait(0.1).movej([0.1] * 3)
+    with pytest.raises(errors.NotAtStartError):
+        stream.job.wait()
+    with pytest.raises(errors.NotAtStartError):
+        stream.movej([0.2] * 3)
+    with pytest.raises(errors.NotAtStartError):
+        stream.close()
+    assert stream.job is None
+    assert not arm.joints.any()
+
+
+def test_there_is_one_stream_at_a_time(arm):
+    first = arm.stream()
+    with pytest.raises(errors.BusyError, match="stream"):
+        arm.stream()
+    first.close()
+    with arm.stream() as second:
+        second.movej([0.1] * 3)
+        second.job.stop()
+        deadline = time.monotonic() + 30.0
+        while not second.job.ended and time.monotonic() < deadline:
+            time.sleep(0.005)
+        with arm.stream() as third:
+            third.movej([0.2] * 3)
+    assert third.job.state == "finished"
+
+
+@pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="counts threads as Linux tells")
+def test_a_closed_arm_is_not_held_by_its_stream():
+    def threads():
+        return len(list(Path("/proc/self/task").iterdir()))
+
+    robot = vp.joint_robot(3, velocity=3.0, acceleration=20.0, jerk=400.0)
+    before = threads()
+    with vp.connect("sim://axes", robot=robot) as arm, arm.stream() as stream:
+        stream.movej([0.1] * 3)
+        assert threads() > before
+    assert threads() == before
+    assert stream.late == []
+    unused = vp.connect("sim://axes", robot=robot)
+    stream = unused.stream()
+    unused.close()
+    assert threads() == before
+    assert stream.ended
+
+
+def test_a_run_that_was_resumed_in_a_jog_is_seen_to_its_end(in_virtual_time):
+    robot = vp.joint_robot(1, velocity=1.0, acceleration=5.0, jerk=50.0)
+    for cycles in range(0, 60, 2):
+        with vp.connect("sim://axis", robot=robot, cycle=0.01) as arm:
+            job = arm.run(vp.Program(robot, start=[0.0]).movej([1.0]), wait=False)
+            arm._loop.core.pass_cycles(20)
+            job.pause()
+            arm._loop.core.pass_cycles(1000)
+            assert job.state == "paused"
+            arm.jog([0.3])
+            arm._loop.core.pass_cycles(cycles)
+            job.resume()
+        assert job.state == "finished", cycles

@@ -26,6 +26,8 @@ using planning::SectionPart;
 /// first, so that motion begins soon.
 constexpr int kFirstLegs = 3;
 constexpr int kMostLegs = 24;
+/// Times that differ by less are the same [s].
+constexpr double kMoment = 1e-9;
 /// Pieces of path that a chunk goes on by at most.
 constexpr size_t kMostPieces = 96;
 
@@ -256,8 +258,8 @@ class StreamPlanner::Line {
   /// Outputs that have changed before the chunk handed out last is left at `leave`.
   void drop_passed(double leave) {
     size_t passed = 0;
-    // At the very moment the next chunk changes it.
-    while (passed < output_times_.size() && output_times_[passed] < leave) ++passed;
+    // At the very moment, but for rounding, the next chunk changes it, too.
+    while (passed < output_times_.size() && output_times_[passed] < leave - kMoment) ++passed;
     outputs_.erase(outputs_.begin(), outputs_.begin() + static_cast<std::ptrdiff_t>(passed));
     tail_outputs_ = output_times_.size() - passed;
     output_times_.clear();

@@ -19,9 +19,12 @@ bool is_over(const Job& job) {
   return state == RunState::kStopped || state == RunState::kFinished || state == RunState::kFault;
 }
 
+/// Nobody need ask for them.
 template <typename T>
-void move_all(std::vector<T>& from, std::vector<T>& to) {
+void keep_newest(std::vector<T>& from, std::vector<T>& to) {
   to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
+  if (to.size() <= MotionStream::kKept) return;
+  to.erase(to.begin(), to.end() - static_cast<std::ptrdiff_t>(MotionStream::kKept));
 }
 
 }  // namespace
@@ -37,6 +40,7 @@ MotionStream::MotionStream(RobotPtr robot, const MotionProgram& beginning, Follo
 }
 
 void MotionStream::add(const Step& step) {
+  require_no_trouble();
   planner_.add(step);
   left_then_ = time_left();
   tried_ = Need::kNone;
@@ -55,6 +59,22 @@ void MotionStream::end() {
 void MotionStream::hand_over() { hand_over(true); }
 
 void MotionStream::hand_over(bool may_rest) {
+  require_no_trouble();
+  try {
+    hand_over_chunks(may_rest);
+  } catch (...) {
+    // What follows does not begin where the arm rests.
+    trouble_ = std::current_exception();
+    if (job_ != nullptr) job_->close();
+    throw;
+  }
+}
+
+void MotionStream::require_no_trouble() const {
+  if (trouble_ != nullptr) std::rethrow_exception(trouble_);
+}
+
+void MotionStream::hand_over_chunks(bool may_rest) {
   for (;;) {
     if (job_ != nullptr && is_over(*job_)) return;
     if (is_offered_ && !is_decided()) return;
@@ -84,15 +104,18 @@ void MotionStream::hand_over(bool may_rest) {
 
 void MotionStream::begin(MotionChunk chunk) {
   job_ = follow_(std::make_shared<const Trajectory>(std::move(chunk.motion)));
-  move_all(chunk.corners, corners_);
-  move_all(chunk.warnings, warnings_);
+  keep(chunk);
+}
+
+void MotionStream::keep(MotionChunk& chunk) {
+  keep_newest(chunk.corners, corners_);
+  keep_newest(chunk.warnings, warnings_);
 }
 
 void MotionStream::offer(MotionChunk chunk) {
   job_->lengthen(std::make_shared<const Trajectory>(std::move(chunk.motion)), chunk.begin);
   is_offered_ = true;
-  move_all(chunk.corners, corners_);
-  move_all(chunk.warnings, warnings_);
+  keep(chunk);
 }
 
 bool MotionStream::is_decided() {
@@ -116,7 +139,7 @@ void MotionStream::note_late() {
   last_late_ = blamed_.step;
   ++late_count_;
   blamed_.waited_cycles = waited;
-  if (late_.size() == kLateKept) late_.erase(late_.begin());
+  if (late_.size() == kKept) late_.erase(late_.begin());
   late_.push_back(blamed_);
 }
 

@@ -1473,6 +1473,11 @@ class MotionStream:
         """
         Steps told that the arm has not begun.
         """
+    @property
+    def wants_steps(self) -> bool:
+        """
+        What was told gives the arm no motion more.
+        """
 
 def admit(
     motion: PlannedMotion,

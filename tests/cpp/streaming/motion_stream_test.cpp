@@ -344,6 +344,36 @@ TEST(MotionStream, RunsTheStepsBeforeOneThatIsRefused) {
   EXPECT_TRUE(cell.stream->job()->log().back().q.isApprox(puma_b(), 1e-12));
 }
 
+TEST(MotionStream, MovesNothingMoreOnceTheArmHasRefusedAMotion) {
+  Script script(*robot("puma560"), puma_a());
+  script.movej(puma_b()).add(Wait{0.1});
+  script.movej(puma_a());
+  Cell cell(script.program());
+  int calls = 0;
+  MotionProgram beginning = cell.program;
+  beginning.steps.clear();
+  const auto refuse_first = [&](std::shared_ptr<const Trajectory> first) {
+    if (++calls == 1) throw MotionError(ErrorCode::kBusy, "the arm is in use");
+    return cell.loop.follow(std::move(first));
+  };
+  MotionStream stream(cell.arm_robot, beginning, refuse_first, kMargin);
+  for (const Step& step : cell.program.steps) stream.add(step);
+  const auto code_of = [](const auto& call) {
+    try {
+      call();
+    } catch (const MotionError& error) {
+      return error.code();
+    }
+    return ErrorCode::kInternal;
+  };
+  EXPECT_EQ(code_of([&] { stream.hand_over(); }), ErrorCode::kBusy);
+  EXPECT_EQ(code_of([&] { stream.hand_over(); }), ErrorCode::kBusy);
+  EXPECT_EQ(code_of([&] { stream.add(cell.program.steps.front()); }), ErrorCode::kBusy);
+  EXPECT_EQ(code_of([&] { stream.end(); }), ErrorCode::kBusy);
+  EXPECT_EQ(calls, 1);
+  EXPECT_EQ(stream.job(), nullptr);
+}
+
 TEST(MotionStream, OfNothingMovesNothing) {
   Script script(*robot("puma560"), puma_a());
   Cell cell(script.program());

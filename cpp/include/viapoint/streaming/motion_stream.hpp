@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <exception>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -41,7 +42,8 @@ class MotionStream {
 
   /// Takes the next step, and hands over what has become certain by it to an arm that is moving.
   /// @throws MotionError what is wrong with the step, which then is not taken: no other can follow,
-  ///   and the arm rests where the steps before it end; or why the arm does not take up the motion
+  ///   and the arm rests where the steps before it end; or why the arm does not take up the motion:
+  ///   then the run ends where the motion before it ends, and every other call throws the same
   void add(const Step& step);
   /// No step follows. @throws MotionError as add()
   void end();
@@ -50,13 +52,16 @@ class MotionStream {
 
   /// Steps told that the arm has not begun.
   [[nodiscard]] int steps_ahead() const;
+  /// True where the steps told so far, as the last hand_over() found, give the arm no motion more:
+  /// it is for others to come that it waits, however many are ahead.
+  [[nodiscard]] bool wants_steps() const { return tried_ == Need::kNow; }
   /// The run, from the first motion on; null before that.
   [[nodiscard]] const std::shared_ptr<OpenJob>& job() const { return job_; }
-  /// How many steps came late, and the newest of them, at most kLateKept.
+  /// How many steps came late, and the newest of them, at most kKept.
   [[nodiscard]] std::uint64_t late_count() const { return late_count_; }
   [[nodiscard]] const std::vector<LateStep>& late() const { return late_; }
-  static constexpr std::size_t kLateKept = 1000;
-  /// What was decided and met since the last call.
+  static constexpr std::size_t kKept = 1000;
+  /// What was decided and met since the last call, the newest, at most kKept of each.
   [[nodiscard]] std::vector<CornerOutcome> take_corners();
   [[nodiscard]] std::vector<Problem> take_warnings();
 
@@ -66,8 +71,11 @@ class MotionStream {
 
   /// @param may_rest hands over motion that begins at rest on the path, too, if it is time for that
   void hand_over(bool may_rest);
+  void hand_over_chunks(bool may_rest);
   void begin(MotionChunk chunk);
   void offer(MotionChunk chunk);
+  void keep(MotionChunk& chunk);
+  void require_no_trouble() const;
   [[nodiscard]] bool is_decided();
   void note_late();
   [[nodiscard]] double time_left() const;
@@ -76,8 +84,9 @@ class MotionStream {
   Follow follow_;
   double margin_;
   std::shared_ptr<OpenJob> job_;
-  bool is_offered_ = false;  ///< a motion whose fate is open
-  bool is_stop_ = false;     ///< it begins where the arm rests on its path
+  std::exception_ptr trouble_;  ///< why the arm did not take up a motion
+  bool is_offered_ = false;     ///< a motion whose fate is open
+  bool is_stop_ = false;        ///< it begins where the arm rests on its path
   /// The first step that was told after the arm had all that was certain, if one was; and the one
   /// that the motion handed over last had waited for.
   std::optional<LateStep> awaited_;
