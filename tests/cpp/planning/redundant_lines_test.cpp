@@ -154,8 +154,10 @@ TEST(SevenJointWrist, CannotBeInterpolatedWhereTheFirstThreeJointsTurnAboutOnePo
     EXPECT_NE(problem.message.find("control only 2 of its 3 coordinates"), std::string::npos)
         << problem.message;
     EXPECT_EQ(problem.value, 2.0);
-    EXPECT_NE(problem.ways_out[0].find("least"), std::string::npos);
-    // The first way out works.
+    EXPECT_TRUE(
+        std::any_of(problem.ways_out.begin(), problem.ways_out.end(),
+                    [](const std::string& way) { return way.find("least") != std::string::npos; }));
+    // That way out works.
     Script least(*arm, home);
     least.movel(goal);
     EXPECT_TRUE(MotionPlanner(arm).check(least.program()).ok());
