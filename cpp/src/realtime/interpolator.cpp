@@ -225,7 +225,7 @@ RunState Interpolator::tick_motion(Setpoint& setpoint) noexcept VIAPOINT_NONBLOC
   run_state_ = classify();
   if (run_state_ == RunState::kFinished || run_state_ == RunState::kStopped) {
     motion_ = nullptr;
-  } else if (run_state_ == RunState::kWaiting) {
+  } else if (ends_here()) {
     waits_ = true;
     rest_at(motion_->duration());
   } else {
@@ -238,13 +238,7 @@ RunState Interpolator::tick_motion(Setpoint& setpoint) noexcept VIAPOINT_NONBLOC
 RunState Interpolator::tick_waiting(Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKING {
   shown_ = {motion_->duration(), 0.0, 0.0};
   hold(setpoint);
-  if (is_stop()) {
-    run_state_ = RunState::kStopped;
-  } else if (!wants_motion()) {
-    run_state_ = RunState::kPaused;
-  } else {
-    run_state_ = open_ ? RunState::kWaiting : RunState::kFinished;
-  }
+  run_state_ = classify_wait();
   if (run_state_ == RunState::kStopped || run_state_ == RunState::kFinished) motion_ = nullptr;
   return run_state_;
 }
@@ -280,10 +274,19 @@ void Interpolator::describe(const Setpoint& setpoint,
   record.qddd = setpoint.qddd;
 }
 
+bool Interpolator::ends_here() const noexcept {
+  return direction_ == Direction::kForward && now_.tau >= motion_->duration();
+}
+
+/// At rest at the end of a motion of which more may come.
+RunState Interpolator::classify_wait() const noexcept {
+  if (is_stop()) return RunState::kStopped;
+  if (!wants_motion()) return RunState::kPaused;
+  return open_ ? RunState::kWaiting : RunState::kFinished;
+}
+
 RunState Interpolator::classify() const noexcept {
-  if (nominal(now_.tau) >= motion_->duration() && direction_ == Direction::kForward) {
-    return open_ ? RunState::kWaiting : RunState::kFinished;
-  }
+  if (ends_here()) return open_ ? classify_wait() : RunState::kFinished;
   const bool at_rest = now_.rate == 0.0 && !governor_.changing();
   if (is_stop()) return at_rest ? RunState::kStopped : RunState::kStopping;
   if (wants_motion()) return RunState::kRunning;

@@ -15,6 +15,7 @@
 #include "planning/planner_fixture.hpp"
 #include "planning/stream_fixture.hpp"
 #include "problem_count.hpp"
+#include "streaming/handed.hpp"
 #include "viapoint/core/error.hpp"
 #include "viapoint/drives/simulated_drive.hpp"
 #include "viapoint/realtime/virtual_loop.hpp"
@@ -50,52 +51,6 @@ MotionProgram some_moves(const RobotModel& robot, int moves, std::mt19937& rando
   }
   return script.program();
 }
-
-/// Hands on to a job, and keeps what it is handed.
-struct Handed {
-  std::vector<std::pair<double, Trajectory>> chunks;  ///< with when the one before is left
-};
-
-class Recorder final : public OpenJob {
- public:
-  Recorder(std::shared_ptr<OpenJob> job, Handed& handed) : job_(std::move(job)), handed_(handed) {}
-  bool wait(double timeout) override { return job_->wait(timeout); }
-  void pause() override { job_->pause(); }
-  void resume() override { job_->resume(); }
-  void step() override { job_->step(); }
-  void backward() override { job_->backward(); }
-  void stop(StopCategory category) override { job_->stop(category); }
-  void on_input(const InputReaction& reaction) override { job_->on_input(reaction); }
-  [[nodiscard]] RunState state() const override { return job_->state(); }
-  [[nodiscard]] double nominal_time() const override { return job_->nominal_time(); }
-  [[nodiscard]] double duration() const override { return job_->duration(); }
-  [[nodiscard]] std::uint64_t overruns() const override { return job_->overruns(); }
-  [[nodiscard]] int move() const override { return job_->move(); }
-  [[nodiscard]] std::vector<LogRecord> log() const override { return job_->log(); }
-  [[nodiscard]] std::vector<LogRecord> log(std::uint64_t from, std::size_t count) const override {
-    return job_->log(from, count);
-  }
-  [[nodiscard]] RunReport report() const override { return job_->report(); }
-  void lengthen(std::shared_ptr<const Trajectory> next, double leave) override {
-    offered_ = {leave, *next};
-    job_->lengthen(std::move(next), leave);
-  }
-  [[nodiscard]] LinkFate fate() override {
-    const LinkFate fate = job_->fate();
-    if (fate == LinkFate::kTaken && offered_.second.joints() > 0) {
-      handed_.chunks.push_back(std::exchange(offered_, {}));
-    }
-    return fate;
-  }
-  void close() override { job_->close(); }
-  [[nodiscard]] double earliest_leave() const override { return job_->earliest_leave(); }
-  [[nodiscard]] std::uint64_t waited_cycles() const override { return job_->waited_cycles(); }
-
- private:
-  std::shared_ptr<OpenJob> job_;
-  Handed& handed_;
-  std::pair<double, Trajectory> offered_;
-};
 
 /// A script, an arm in virtual time, and what happens between them.
 struct Cell {
@@ -158,17 +113,6 @@ double off_chunks(const std::vector<LogRecord>& log, const Handed& handed) {
     worst = std::max(worst, (q - record.q).cwiseAbs().maxCoeff());
   }
   return worst;
-}
-
-std::vector<TrajectoryPiece> told(const Handed& handed) {
-  std::vector<TrajectoryPiece> pieces;
-  for (std::size_t k = 0; k < handed.chunks.size(); ++k) {
-    const bool is_last = k + 1 == handed.chunks.size();
-    const Trajectory& chunk = handed.chunks[k].second;
-    planning::append_until(pieces, chunk.pieces(),
-                           is_last ? chunk.duration() : handed.chunks[k + 1].first);
-  }
-  return pieces;
 }
 
 bool ends_at(const JointVector& q, const std::vector<TrajectoryPiece>& whole) {

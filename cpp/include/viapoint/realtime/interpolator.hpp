@@ -127,6 +127,8 @@ class Interpolator {
   [[nodiscard]] bool wants_motion() const noexcept;
   [[nodiscard]] double target() const noexcept;
   [[nodiscard]] double nominal(double way) const noexcept;
+  [[nodiscard]] bool ends_here() const noexcept;
+  [[nodiscard]] RunState classify_wait() const noexcept;
   [[nodiscard]] RunState classify() const noexcept;
   void hold(Setpoint& setpoint) const noexcept VIAPOINT_NONBLOCKING;
   RunState tick_jog(Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKING;
