@@ -49,6 +49,7 @@ void Interpolator::begin(const Trajectory& motion, bool open) noexcept VIAPOINT_
   run_state_ = RunState::kRunning;
   outputs_before_ = outputs_;
   farthest_piece_ = 0;
+  farthest_ = 0.0;
   enter_piece(0);
 }
 
@@ -62,6 +63,8 @@ LinkFate Interpolator::lengthen(const MotionLink& link) noexcept VIAPOINT_NONBLO
     return now_.tau > link.same_until ? LinkFate::kTooLate : LinkFate::kNotYet;
   }
   if (waits_ && now_.tau > link.same_until) return LinkFate::kTooLate;
+  // It has been beyond on the old way, and come back: outputs there are switched, and not again.
+  if (farthest_ > link.same_until) return LinkFate::kTooLate;
   // At its end the arm rests, whatever rate it came with; what follows begins anew.
   const bool rests = waits_ || now_.tau >= motion_->duration();
   if (link.dropped > 0) {
@@ -75,6 +78,7 @@ LinkFate Interpolator::lengthen(const MotionLink& link) noexcept VIAPOINT_NONBLO
   anchor_ -= link.shift;
   fresh_ -= link.shift;
   farthest_piece_ -= link.dropped;
+  farthest_ -= link.shift;
   lookahead_.lengthen(*motion_, link.same_until, link.shift, link.dropped);
   if (rests) {
     waits_ = false;
@@ -357,6 +361,7 @@ bool Interpolator::rests_at_start_of(std::size_t piece) const noexcept VIAPOINT_
 void Interpolator::enter_piece(std::size_t piece) noexcept VIAPOINT_NONBLOCKING {
   piece_ = piece;
   farthest_piece_ = std::max(farthest_piece_, piece);
+  farthest_ = std::max(farthest_, nominal(now_.tau));
   const OutputEffect& effect = motion_->outputs_after(farthest_piece_);
   outputs_ = (outputs_before_ & ~effect.changed) | effect.on;
 }

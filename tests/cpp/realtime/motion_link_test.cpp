@@ -213,5 +213,34 @@ TEST(MotionLink, IsRefusedWhereItsProofDoesNotHold) {
   EXPECT_TRUE(run.chain.is_settled());
 }
 
+/// Outputs beyond are switched already, and the new way counts its pieces otherwise.
+TEST(MotionLink, ComesTooLateForAnArmThatHasBeenBeyondAndCameBack) {
+  int decided = 0;
+  for (unsigned seed = 0; seed < 40; ++seed) {
+    SCOPED_TRACE(seed);
+    Handover cell(seed);
+    if (cell.motion.trajectory.pieces().size() < 6) continue;
+    cell.hand_over();
+    ASSERT_NE(cell.link, nullptr);
+    const double leave = cell.link->same_until;
+    Setpoint setpoint;
+    const auto tick_until = [&](const auto& is_there) {
+      for (int k = 0; k < 5000 && !is_there(); ++k) cell.interpolator.tick(setpoint);
+    };
+    tick_until([&] { return cell.interpolator.nominal_time() > leave + 1e-3; });
+    cell.interpolator.wish(Wish::kBackward);
+    tick_until([&] { return cell.interpolator.nominal_time() < 0.5 * leave; });
+    cell.interpolator.wish(Wish::kRun);
+    LinkFate fate = LinkFate::kNotYet;
+    tick_until([&] {
+      fate = cell.interpolator.lengthen(*cell.link);
+      return fate != LinkFate::kNotYet;
+    });
+    EXPECT_EQ(fate, LinkFate::kTooLate);
+    decided += cell.interpolator.nominal_time() < leave ? 1 : 0;
+  }
+  EXPECT_GT(decided, 10) << "it was decided only when the arm was beyond again";
+}
+
 }  // namespace
 }  // namespace viapoint

@@ -116,9 +116,13 @@ void SoakJudge::hold_outputs(std::span<const Trajectory> ways) {
   for (const Cycle& cycle : run_) {
     const auto& [nominal_time, way] = cycle.progress;
     farthest = std::max(farthest, nominal_time);
-    const OutputEffect& effect = ways[way].outputs_after(ways[way].piece_at(farthest));
-    const std::uint64_t expected = (outputs_before_ & ~effect.changed) | effect.on;
-    if (cycle.outputs == expected) continue;
+    const auto after = [&](double time) {
+      const OutputEffect& effect = ways[way].outputs_after(ways[way].piece_at(time));
+      return (outputs_before_ & ~effect.changed) | effect.on;
+    };
+    const std::uint64_t expected = after(farthest);
+    // Where a step ends the arm is at the next piece's beginning, but for rounding.
+    if (cycle.outputs == expected || cycle.outputs == after(farthest + kEndSlack)) continue;
     std::ostringstream text;
     text << "the outputs were " << cycle.outputs << " and not " << expected << " at "
          << nominal_time << " s, after " << farthest << " s";

@@ -161,6 +161,7 @@ class Interpolator {
   const Trajectory* motion_ = nullptr;
   std::size_t piece_ = 0;
   std::size_t farthest_piece_ = 0;
+  double farthest_ = 0.0;  ///< τ
   Direction direction_ = Direction::kForward;
   /// Along the way in `direction_`: backward, τ since the motion's end, and rates count positive.
   RateState now_;
