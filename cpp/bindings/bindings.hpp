@@ -71,6 +71,7 @@ void bind_program(py::module_& m);
 void bind_planning(py::module_& m);
 void bind_motion_file(py::module_& m);
 void bind_realtime(py::module_& m);
+void bind_rtde(py::module_& m);
 void bind_stream(py::module_& m);
 /// @param profile the submodule that bind_profile has made
 void bind_state_to_state(py::module_& profile);

@@ -15,6 +15,7 @@ PYBIND11_MODULE(_core, m) {
   bind_motion_file(m);
   bind_stream(m);
   bind_realtime(m);
+  bind_rtde(m);
   bind_profile(m);
   auto profile = m.attr("profile").cast<pybind11::module_>();
   bind_state_to_state(profile);

@@ -85,13 +85,12 @@ RtdeAddress read_rtde(const YamlValue& value) {
     if (port != std::floor(port)) map.at("port").refuse("is no whole number");
     rtde.port = static_cast<int>(port);
   }
-  bool is_open = false;
   if (map.has("other_machines")) {
     const std::string word = map.at("other_machines").text();
     if (word != "allowed") {
       map.at("other_machines").refuse("is \"" + word + "\"; the only word for it is \"allowed\"");
     }
-    is_open = true;
+    rtde.other_machines = true;
   }
   if (map.has("address")) {
     rtde.address = map.at("address").text();
@@ -101,7 +100,7 @@ RtdeAddress read_rtde(const YamlValue& value) {
       map.at("address").refuse("\"" + rtde.address + "\" is no address in numbers",
                                {"for example 127.0.0.1, or ::1"});
     }
-    if (!is_this_machine(rtde.address) && !is_open) {
+    if (!is_this_machine(rtde.address) && !rtde.other_machines) {
       map.at("address").refuse(
           "RTDE has neither passwords nor encryption: other machines could turn the speed and "
           "switch outputs there, and nobody would ask who they are",

@@ -21,6 +21,7 @@ struct TlsFiles {
 struct RtdeAddress {
   std::string address = "127.0.0.1";  ///< in numbers
   int port = 30004;
+  bool other_machines = false;  ///< may reach the address
 };
 
 /// What the configuration file says (docs/controller.md).

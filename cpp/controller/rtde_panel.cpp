@@ -18,6 +18,8 @@ const ForwardKinematics& kinematics_of(const RobotModel& robot) {
 
 RtdePanel::RtdePanel(ArmHost& host, const RobotModel& robot, const RtdeAddress& where,
                      std::chrono::nanoseconds cycle)
-    : arm_(host), server_(arm_, kinematics_of(robot), {where.address, where.port, cycle}) {}
+    : arm_(host),
+      server_(arm_, kinematics_of(robot),
+              {where.address, where.port, cycle, where.other_machines}) {}
 
 }  // namespace viapoint::controller

@@ -67,6 +67,7 @@ class Arm:
         self._cycle = cycle
         self._jobs: list[Job] = []
         self._stream: Stream | None = None
+        self._rtde: list[_core.RtdeService] = []
 
     def __repr__(self) -> str:
         """Robot and state."""
@@ -97,6 +98,8 @@ class Arm:
             if self._stream is not None:
                 self._stream.close(stop=True)
         finally:
+            for service in self._rtde:
+                service.close()
             self._loop.close()
 
     def run(self, program: Program | Motion, wait: bool = True) -> Job:
@@ -317,6 +320,47 @@ class Arm:
         if not isinstance(value, bool):
             raise BadArgumentError(f"value is {value!r}; an input is True or False.")
         self._own_loop().set_inputs(bit, bit if value else 0)
+
+    def serve_rtde(
+        self, port: int = 30004, *, address: str = "127.0.0.1", other_machines: bool = False
+    ) -> int:
+        """Let clients of UR's RTDE look on, turn the override and switch outputs, until `close`.
+
+        For an arm of six joints in this process; a ``viapoint-controller`` serves RTDE by its
+        configuration (``docs/rtde.md``). In virtual time nobody is served.
+
+        Parameters
+        ----------
+        port : int
+            0 to 65535; 0 lets the system choose.
+        address : str
+            In numbers, IPv4 or IPv6.
+        other_machines : bool
+            Allows an address that other machines can reach. RTDE has neither passwords nor
+            encryption.
+
+        Returns
+        -------
+        int
+            The port listened on.
+
+        Raises
+        ------
+        BadArgumentError
+            Another port, an address that is none or needs ``other_machines``, an arm of other than
+            six joints, or one that is driven by another process.
+        BusyError
+            Another program listens there.
+        """
+        number_of_port = integer(port, "port", 0, 65535)
+        loop = self._own_loop()
+        if isinstance(loop, VirtualLoop):
+            return number_of_port
+        service = _core.RtdeService(
+            loop, self.robot._core, address, number_of_port, other_machines, self._cycle
+        )
+        self._rtde.append(service)
+        return service.port
 
     @property
     def joints(self) -> Vector:

@@ -17,6 +17,7 @@ import numpy as np
 import pytest
 
 import viapoint as vp
+from viapoint.errors import BadArgumentError, BusyError
 
 DOCUMENT = Path(__file__).parents[2] / "docs" / "rtde.md"
 START = [0.1, -1.5, 1.2, -0.8, -1.5, 0.3]
@@ -49,6 +50,10 @@ class Client:
     def receive(self):
         length, kind = struct.unpack(">HB", self.take(3))
         return chr(kind), self.take(length - 3)
+
+    def skip(self, count):
+        for _ in range(count):
+            self.receive()
 
     def ask(self, kind, payload=b""):
         self.send(kind, payload)
@@ -153,10 +158,8 @@ def test_what_a_client_sets_acts_on_the_run(served):
 def client_recipe(client, names):
     """Set up an input recipe; packages of data come between."""
     client.send("I", names.encode())
-    while True:
-        kind, payload = client.receive()
-        if kind == "I":
-            return payload[0]
+    replies = (client.receive() for _ in range(1000))
+    return next(payload[0] for kind, payload in replies if kind == "I")
 
 
 def until(client, holds):
@@ -188,8 +191,7 @@ def test_rubbish_slow_and_many_clients_disturb_neither_arm_nor_the_others(served
         for rubbish in (b"GET / HTTP/1.1\r\n\r\n", b"\xff" * 9000, b"\0\3S", b"\0\0\0\0"):
             with Client(port) as bad, contextlib.suppress(ConnectionError):
                 bad.socket.sendall(rubbish)
-                while True:
-                    bad.receive()
+                bad.skip(10)
         slow = others.enter_context(Client(port))
         slow.start(500.0, *["target_q"] * 50)
         refused = 0
@@ -205,6 +207,35 @@ def test_rubbish_slow_and_many_clients_disturb_neither_arm_nor_the_others(served
         assert job.state == "finished"
         assert job.report.lost_records == 0
         until(good, lambda state, fraction: (state, fraction) == (1, 1.0))
+
+
+def test_an_arm_of_this_process_serves_rtde_until_it_is_closed():
+    with vp.connect("sim://ur5e", start=START) as arm:
+        port = arm.serve_rtde(0)
+        with pytest.raises(BusyError, match=f"port {port}"):
+            arm.serve_rtde(port)
+        with pytest.raises(BadArgumentError, match="neither passwords nor encryption"):
+            arm.serve_rtde(0, address="0.0.0.0")
+        client = Client(port)
+        client.start(100.0, "actual_q", "target_speed_fraction")
+        q, _ = client.values()
+        assert q == tuple(START)
+        slider = client_recipe(client, "speed_slider_mask,speed_slider_fraction")
+        client.send("U", struct.pack(">BId", slider, 1, 0.5))
+        assert any(client.values()[1] == (0.5,) for _ in range(1000))
+        assert arm.override == 0.5
+    with client, pytest.raises(ConnectionError):
+        client.skip(1000)
+    with pytest.raises(OSError, match="refused"):
+        Client(port)
+
+
+def test_an_arm_of_other_joints_or_another_process_is_not_served(served):
+    url, _ = served
+    with vp.connect("sim://two_link") as arm, pytest.raises(BadArgumentError, match="6 joints"):
+        arm.serve_rtde(0)
+    with vp.connect(url) as arm, pytest.raises(BadArgumentError, match="another process"):
+        arm.serve_rtde(0)
 
 
 def test_only_arms_of_six_joints_are_served(controller, tmp_path):

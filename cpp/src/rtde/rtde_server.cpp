@@ -41,6 +41,19 @@ std::int64_t now_of_clock() {
   return now.tv_sec * kSecond + now.tv_nsec;
 }
 
+Descriptor listen(const RtdeOptions& options) {
+  Descriptor listener = rtde::listen_at(options.address, options.port);
+  if (options.other_machines || options.address.starts_with("127.") || options.address == "::1") {
+    return listener;
+  }
+  throw MotionError(
+      ErrorCode::kBadArgument,
+      "RTDE has neither passwords nor encryption: at " + options.address +
+          " other machines could turn the speed and switch outputs, and nobody would ask who they "
+          "are",
+      {"serve it on 127.0.0.1", "say that other machines may, where the network is yours"});
+}
+
 double seconds(std::chrono::nanoseconds time) {
   return std::chrono::duration<double>(time).count();
 }
@@ -58,7 +71,7 @@ struct RtdeServer::Impl {
       : arm(of),
         cycle(options.cycle),
         watch(checked(kinematics), seconds(options.cycle), now_of_clock()),
-        listener(rtde::listen_at(options.address, options.port)),
+        listener(listen(options)),
         bell(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
     try {
       thread = std::thread([this] { serve(); });

@@ -40,6 +40,7 @@ __all__: list[str] = [
     "Problem",
     "ProcessStretch",
     "RobotModel",
+    "RtdeService",
     "RunReport",
     "Singularity",
     "Stream",
@@ -1478,6 +1479,23 @@ class MotionStream:
         """
         What was told gives the arm no motion more.
         """
+
+class RtdeService:
+    """
+    Serves RTDE clients until it is closed.
+    """
+    def __init__(
+        self,
+        loop: ControllerLoop,
+        robot: RobotModel,
+        address: str,
+        port: typing.SupportsInt | typing.SupportsIndex,
+        other_machines: bool,
+        cycle: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> None: ...
+    def close(self) -> None: ...
+    @property
+    def port(self) -> int: ...
 
 def admit(
     motion: PlannedMotion,

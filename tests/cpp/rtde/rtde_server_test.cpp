@@ -206,6 +206,7 @@ TEST(RtdeServerRefuses, ArmsAddressesAndPortsThatItCannotServe) {
   EXPECT_EQ(code_of(five, {.port = 0}), ErrorCode::kBadArgument);
   EXPECT_EQ(code_of(six_axes(), {.address = "localhost", .port = 0}), ErrorCode::kBadArgument);
   EXPECT_EQ(code_of(six_axes(), {.port = 65536}), ErrorCode::kBadArgument);
+  EXPECT_EQ(code_of(six_axes(), {.address = "0.0.0.0", .port = 0}), ErrorCode::kBadArgument);
   const RtdeServer first(arm, six_axes(), {.port = 0});
   EXPECT_EQ(code_of(six_axes(), {.port = first.port()}), ErrorCode::kBusy);
 }

@@ -16,6 +16,8 @@ struct RtdeOptions {
   int port = 30004;                   ///< 0: the system chooses
   /// The loop's. Packages come at most once a cycle.
   std::chrono::nanoseconds cycle{2'000'000};
+  /// The word for an address that others than this machine can reach.
+  bool other_machines = false;
 };
 
 /// Listens for RTDE clients (protocol version 2), and serves all of them from one thread of
@@ -31,8 +33,9 @@ class RtdeServer {
   static constexpr int kMostClients = 16;
 
   /// @param arm outlives the server; @param kinematics what the tool's pose is found with
-  /// @throws MotionError(kBadArgument) for an arm of other than six joints, or an address that is
-  ///   none; kBusy where it cannot be listened on
+  /// @throws MotionError(kBadArgument) for an arm of other than six joints, an address that is
+  /// none,
+  ///   or one beyond this machine without the word for it; kBusy where it cannot be listened on
   RtdeServer(RtdeArm& arm, const ForwardKinematics& kinematics, const RtdeOptions& options = {});
   /// Ends every connection.
   ~RtdeServer();
