@@ -25,7 +25,7 @@ class StreamHandle {
             robot.robot, program,
             // An arm that is disconnected is not held by its streams.
             [to = std::weak_ptr<Loop>(loop.open())](std::shared_ptr<const Trajectory> first) {
-              return HandleOf<Loop>{to.lock(), 0, nullptr}.open()->follow(std::move(first));
+              return HandleOf<Loop>{to.lock(), 0, {}}.open()->follow(std::move(first));
             },
             margin) {}
 

@@ -1,11 +1,12 @@
-// The 2 ms loop on a simulated drive, on the clock and in virtual time.
+// The 2 ms loop on its drive, on the clock and in virtual time.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <tuple>
+#include <utility>
+#include <vector>
 
 #include "run_handles.hpp"
-#include "viapoint/drives/simulated_drive.hpp"
 
 namespace viapoint::python {
 namespace {
@@ -25,22 +26,34 @@ GuardOptions guard_of(const RobotHandle& robot, double tool_speed, const Eigen::
 
 /// @param speed, low, high what the guard holds at the tool
 template <typename Loop>
-HandleOf<Loop> make_loop(const RobotHandle& robot, const Vector& start, double cycle, double speed,
-                         const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
+HandleOf<Loop> make_loop(const RobotHandle& robot, const DriveSetup& drive, double cycle,
+                         int silent_cycles, double speed, const Eigen::Vector3d& low,
+                         const Eigen::Vector3d& high) {
   if (!(cycle >= 1e-4) || !(cycle <= 1.0)) {
     throw MotionError(ErrorCode::kBadArgument,
                       "cycle is " + std::to_string(cycle) + " s; allowed are 0.0001 s to 1 s.");
   }
   const int joints = robot.robot->joints();
-  const JointVector q = joints_from(start, "start", joints);
   LoopOptions options;
   options.cycle = std::chrono::nanoseconds(std::llround(cycle * 1e9));
   options.guard = guard_of(robot, speed, low, high);
-  auto inputs = std::make_shared<std::atomic<std::uint64_t>>(0);
+  options.guard.silent_cycles = silent_cycles;
+  DriveLinks links;
   const Release release;
-  return {std::make_shared<Loop>(std::make_unique<SimulatedDrive>(q, inputs), robot.robot->limits(),
-                                 options),
-          joints, inputs};
+  auto loop = std::make_shared<Loop>(make_drive(drive, joints, options.cycle, links),
+                                     robot.robot->limits(), options);
+  return {std::move(loop), joints, std::move(links)};
+}
+
+/// @throws MotionError(kBadArgument) where the drive has no such thing
+template <typename Link>
+Link& simulated(const std::shared_ptr<Link>& link, const char* what) {
+  if (link == nullptr) {
+    throw MotionError(ErrorCode::kBadArgument,
+                      std::string("Only a simulated drive has ") + what + " that a script moves.",
+                      {"Connect to a simulated arm: viapoint.connect(\"sim://...\")."});
+  }
+  return *link;
 }
 
 /// What both loops have.
@@ -48,8 +61,9 @@ template <typename Loop>
 py::class_<HandleOf<Loop>> bind_loop(py::module_& m, const char* name, const char* doc) {
   using Handle = HandleOf<Loop>;
   py::class_<Handle> loop(m, name, doc);
-  loop.def(py::init(&make_loop<Loop>), py::arg("robot"), py::arg("start"), py::kw_only(),
-           py::arg("cycle"), py::arg("tool_speed"), py::arg("box_min"), py::arg("box_max"))
+  loop.def(py::init(&make_loop<Loop>), py::arg("robot"), py::arg("drive"), py::kw_only(),
+           py::arg("cycle"), py::arg("silent_cycles"), py::arg("tool_speed"), py::arg("box_min"),
+           py::arg("box_max"))
       .def(
           "run",
           [](const Handle& l, const MotionHandle& motion) {
@@ -71,11 +85,43 @@ py::class_<HandleOf<Loop>> bind_loop(py::module_& m, const char* name, const cha
       .def(
           "set_inputs",
           [](const Handle& l, std::uint64_t changed, std::uint64_t on) {
-            std::uint64_t present = l.inputs->load();
-            while (!l.inputs->compare_exchange_weak(present, (present & ~changed) | on)) {
+            std::atomic<std::uint64_t>& inputs = simulated(l.links.inputs, "inputs");
+            std::uint64_t present = inputs.load();
+            while (!inputs.compare_exchange_weak(present, (present & ~changed) | on)) {
             }
           },
           py::arg("changed"), py::arg("on"), "Switch inputs of the simulated drive, bit by bit.")
+      .def(
+          "guide",
+          [](const Handle& l, const std::vector<Vector>& positions) {
+            static_cast<void>(l.open());
+            std::vector<JointVector> way;
+            way.reserve(positions.size());
+            for (const Vector& q : positions) way.push_back(joints_from(q, "q", l.joints));
+            simulated(l.links.hand, "an arm").guide(std::move(way));
+          },
+          py::arg("positions"), "A hand takes the simulated arm there, a position a cycle.")
+      .def(
+          "let_go", [](const Handle& l) { simulated(l.links.hand, "an arm").let_go(); },
+          "The hand lets go of the simulated arm.")
+      .def_property_readonly("guided",
+                             [](const Handle& l) {
+                               return l.open()->guided() ||
+                                      (l.links.hand != nullptr && l.links.hand->guides());
+                             })
+      .def_property_readonly(
+          "observed",
+          [](const Handle& l) {
+            const LoopCycle now = l.open()->newest_cycle();
+            return std::make_tuple(now.stamp, Vector(now.measurement.q), now.measurement.inputs,
+                                   now.outputs);
+          },
+          "Of the last cycle: stamp [ns], joints, inputs, outputs.")
+      .def_property_readonly("datagrams",
+                             [](const Handle& l) {
+                               if (l.links.traffic != nullptr) return counts_of(*l.links.traffic);
+                               return py::typing::Dict<py::str, py::int_>();
+                             })
       .def_property_readonly("jogging", [](const Handle& l) { return l.open()->jogging(); })
       .def_property_readonly("jog_block", [](const Handle& l) { return l.open()->jog_block(); })
       .def_property(
@@ -125,7 +171,8 @@ TimedCommand command_from(double time, const std::string& kind, const Vector& va
 void bind_realtime(py::module_& m) {
   m.attr("CYCLE") = std::chrono::duration<double>(LoopOptions{}.cycle).count();
   bind_run(m);
-  bind_loop<ControllerLoop>(m, "ControllerLoop", "The 2 ms loop over a simulated drive.")
+  bind_drives(m);
+  bind_loop<ControllerLoop>(m, "ControllerLoop", "The 2 ms loop over a drive.")
       .def_property_readonly(
           "fault_cycles",
           [](const LoopHandle& l) { return LogHandle{l.open()->fault_cycles(), l.joints}; })

@@ -2,13 +2,12 @@
 /// What Python holds of loops, runs and logs.
 #pragma once
 
-#include <atomic>
-#include <cstdint>
 #include <memory>
 #include <utility>
 #include <vector>
 
 #include "bindings.hpp"
+#include "drive_setup.hpp"
 #include "viapoint/realtime/controller_loop.hpp"
 #include "viapoint/realtime/virtual_loop.hpp"
 
@@ -20,7 +19,7 @@ template <typename Loop>
 struct HandleOf {
   std::shared_ptr<Loop> loop;
   int joints = 0;
-  std::shared_ptr<std::atomic<std::uint64_t>> inputs;  ///< of the simulated drive
+  DriveLinks links;
 
   [[nodiscard]] std::shared_ptr<Loop> open() const {
     if (loop == nullptr) {

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <tuple>
 #include <utility>
 
 #include "kinematics/yaml_map.hpp"
@@ -29,8 +30,8 @@ std::chrono::nanoseconds time_in(const YamlValue& value, double least, double mo
   return std::chrono::nanoseconds(std::llround(number_in(value, least, most, "s") * 1e9));
 }
 
-/// "127.0.0.1:7420", "[::1]:7420".
-void read_address(const YamlValue& value, Config& config) {
+/// "127.0.0.1:7420", "[::1]:7420": the host as it stands there, and the port.
+std::pair<std::string, int> read_address(const YamlValue& value) {
   const std::string text = value.text();
   const std::size_t colon = text.rfind(':');
   const std::string host = text.substr(0, colon == std::string::npos ? 0 : colon);
@@ -46,8 +47,7 @@ void read_address(const YamlValue& value, Config& config) {
     value.refuse("\"" + text + "\" is no address and port in numbers",
                  {"for example 127.0.0.1:7420, or [::1]:7420"});
   }
-  config.host = host;
-  config.port = std::stoi(port);
+  return {host, std::stoi(port)};
 }
 
 void read_workspace(const YamlValue& value, GuardOptions& guard) {
@@ -111,11 +111,62 @@ RtdeAddress read_rtde(const YamlValue& value) {
   return rtde;
 }
 
-void read_drive(const YamlValue& value) {
-  const std::string drive = value.text();
-  if (drive != "simulated") {
-    value.refuse("\"" + drive + "\" is no drive", {"there is \"simulated\""});
+SimulatedDriveOptions read_simulated(const YamlValue& value) {
+  constexpr double kMostLag = 10.0, kMostError = 1.0;
+  YamlMap map(value);
+  SimulatedDriveOptions options;
+  if (map.has("lag")) options.lag = number_in(map.at("lag"), 0.0, kMostLag, "s");
+  if (map.has("resolution")) {
+    options.resolution = number_in(map.at("resolution"), 0.0, kMostError, "rad or m");
   }
+  if (map.has("noise")) options.noise = number_in(map.at("noise"), 0.0, kMostError, "rad or m");
+  if (map.has("seed")) {
+    const int seed = map.at("seed").whole_number();
+    if (seed < 0) map.at("seed").refuse("is " + std::to_string(seed) + "; it must be 0 or more");
+    options.seed = static_cast<std::uint64_t>(seed);
+  }
+  map.finish({"lag", "resolution", "noise", "seed"});
+  return options;
+}
+
+UdpDriveOptions read_device(const YamlValue& value) {
+  auto [host, port] = read_address(value);
+  if (port == 0) value.refuse("the device's port is 0; allowed are 1 to 65535");
+  UdpDriveOptions device;
+  device.host = host.front() == '[' ? host.substr(1, host.size() - 2) : host;
+  device.port = port;
+  return device;
+}
+
+/// `simulated`, or a map that says more.
+void read_drive(const YamlValue& value, Config& config) {
+  const std::vector<std::string> ways{"\"simulated\"",
+                                      "{simulated: {lag, resolution, noise, seed}}",
+                                      "{udp: 127.0.0.1:7500, silent_cycles: 10}"};
+  if (!value.node().IsMap()) {
+    const std::string drive = value.text();
+    if (drive != "simulated") value.refuse("\"" + drive + "\" is no drive", ways);
+    return;
+  }
+  YamlMap map(value);
+  if (map.has("simulated") == map.has("udp")) value.refuse("is no drive", ways);
+  if (map.has("simulated")) {
+    config.simulated = read_simulated(map.at("simulated"));
+    map.finish({"simulated"});
+    return;
+  }
+  constexpr int kMostSilence = 10'000;
+  config.device = read_device(map.at("udp"));
+  if (map.has("silent_cycles")) {
+    const int silent = map.at("silent_cycles").whole_number();
+    if (silent < 0 || silent > kMostSilence) {
+      map.at("silent_cycles")
+          .refuse("is " + std::to_string(silent) + "; allowed are 0 to " +
+                  std::to_string(kMostSilence));
+    }
+    config.guard.silent_cycles = silent;
+  }
+  map.finish({"udp", "silent_cycles"});
 }
 
 void read_start(const YamlValue& value, Config& config) {
@@ -146,8 +197,11 @@ void check_heartbeat(YamlMap& map, const Config& config) {
 Config read(YamlMap map) {
   Config config;
   config.robot = map.at("robot", "robot: puma560").text();
-  if (map.has("drive")) read_drive(map.at("drive"));
-  if (map.has("start")) read_start(map.at("start"), config);
+  if (map.has("drive")) read_drive(map.at("drive"), config);
+  if (map.has("start")) {
+    if (config.device) map.at("start").refuse("is for a simulated drive; a device tells its own");
+    read_start(map.at("start"), config);
+  }
   if (map.has("cycle")) config.cycle = time_in(map.at("cycle"), 1e-4, 1.0);
   if (map.has("heartbeat")) config.heartbeat = time_in(map.at("heartbeat"), 0.02, 60.0);
   check_heartbeat(map, config);
@@ -159,7 +213,7 @@ Config read(YamlMap map) {
   if (map.has("rtde")) config.rtde = read_rtde(map.at("rtde"));
   if (map.has("logs")) config.logs = map.at("logs").text();
   if (map.has("listen")) {
-    read_address(map.at("listen"), config);
+    std::tie(config.host, config.port) = read_address(map.at("listen"));
     if (!config.is_loopback() && !config.tls) {
       map.at("listen").refuse(
           "other machines could reach the arm there, and nobody would ask who they are",
@@ -181,6 +235,20 @@ Config read(YamlMap map) {
   throw MotionError(std::move(problem));
 }
 
+/// Names that are relative count from the folder of the file that says them.
+void resolve_names(Config& config, const std::filesystem::path& folder) {
+  const auto resolve = [&folder](std::string& name) {
+    if (!name.empty()) name = (folder / name).lexically_normal().string();
+  };
+  const std::string ending = std::filesystem::path(config.robot).extension();
+  if (ending == ".yaml" || ending == ".yml" || ending == ".urdf") resolve(config.robot);
+  resolve(config.logs);
+  if (!config.tls) return;
+  resolve(config.tls->authority);
+  resolve(config.tls->certificate);
+  resolve(config.tls->key);
+}
+
 }  // namespace
 
 bool Config::is_loopback() const { return host.starts_with("127.") || host == "[::1]"; }
@@ -191,7 +259,9 @@ Config config_from_yaml(const std::string& text, const std::string& source) {
     if (documents.size() != 1) {
       refuse_file(source, "holds " + std::to_string(documents.size()) + " documents, not one");
     }
-    return read(YamlMap(YamlValue(documents.front(), source, "")));
+    Config config = read(YamlMap(YamlValue(documents.front(), source, "")));
+    resolve_names(config, std::filesystem::path(source).parent_path());
+    return config;
   } catch (const YAML::Exception& error) {
     refuse_file(source, "is no YAML: " + error.msg, error.mark.line + 1);
   } catch (const MotionError& error) {

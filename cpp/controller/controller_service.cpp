@@ -63,6 +63,21 @@ std::string name_of(const std::string& name) {
   return shown;
 }
 
+/// "0.1" of "0.1.0".
+std::string major_and_minor(const std::string& version) {
+  const std::size_t first = version.find('.');
+  return first == std::string::npos ? version : version.substr(0, version.find('.', first + 1));
+}
+
+/// One that tells no version is not of this package, and answers for what it sends by itself.
+void require_this_version(const std::string& version) {
+  if (version.empty() || major_and_minor(version) == major_and_minor(VIAPOINT_VERSION)) return;
+  throw MotionError(ErrorCode::kBadArgument,
+                    "the script has viapoint " + name_of(version) + ", the controller " +
+                        VIAPOINT_VERSION + "; the first two numbers have to be the same",
+                    {"install the controller's version of the package where the script runs"});
+}
+
 }  // namespace
 
 ControllerService::ControllerService(ArmHost& host, RobotPtr robot, std::chrono::nanoseconds cycle,
@@ -120,6 +135,7 @@ grpc::Status ControllerService::GetLog(Context* context, const v1::GetLogRequest
 grpc::Status ControllerService::TakeControl(Context* context, const v1::TakeControlRequest* request,
                                             v1::Control* reply) {
   return answer(context, [&] {
+    require_this_version(request->version());
     const std::string name = name_of(request->name());
     if (name.empty()) throw MotionError(ErrorCode::kBadArgument, "who asks gives no name");
     reply->set_token(host_.take_control(name));

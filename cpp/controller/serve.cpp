@@ -18,6 +18,7 @@
 #include "viapoint/core/error.hpp"
 #include "viapoint/core/number_text.hpp"
 #include "viapoint/drives/simulated_drive.hpp"
+#include "viapoint/drives/udp_drive.hpp"
 #include "viapoint/kinematics/robot_description.hpp"
 #include "viapoint/kinematics/robot_model.hpp"
 #include "viapoint/remote/arm_host.hpp"
@@ -54,6 +55,18 @@ JointVector start_of(const Config& config, const RobotModel& robot) {
   return config.start;
 }
 
+/// @param start where a simulated arm stands
+std::unique_ptr<Drive> drive_of(const Config& config, const JointVector& start) {
+  if (config.device) {
+    UdpDriveOptions device = *config.device;
+    device.joints = static_cast<int>(start.size());
+    return std::make_unique<UdpDrive>(std::move(device));
+  }
+  SimulatedDriveOptions options = config.simulated;
+  options.cycle = config.cycle;
+  return std::make_unique<SimulatedDrive>(start, nullptr, options);
+}
+
 LoopOptions options_of(const Config& config, const RobotModel& robot) {
   LoopOptions options;
   options.cycle = config.cycle;
@@ -77,9 +90,8 @@ int serve(const std::string& config_path) {
   ArmHost host(
       robot->limits(),
       [&](const JointVector& rest) {
-        return std::make_unique<ControllerLoop>(
-            std::make_unique<SimulatedDrive>(rest.size() == 0 ? start : rest), robot->limits(),
-            options);
+        return std::make_unique<ControllerLoop>(drive_of(config, rest.size() == 0 ? start : rest),
+                                                robot->limits(), options);
       },
       config.heartbeat,
       [&](std::uint64_t number, const std::shared_ptr<Job>& job) {

@@ -132,6 +132,9 @@ v1::ArmState wire_of(const HostStatus& status) {
   out.set_operator_(status.operator_name);
   out.set_control_loss(status.control_loss);
   out.set_run(status.run);
+  out.set_stamp(status.stamp);
+  out.set_inputs(status.inputs);
+  out.set_outputs(status.outputs);
   return out;
 }
 

@@ -32,6 +32,7 @@ from ._core import (
     __version__,
 )
 from ._curve_fit import CurveFit, fit_curve
+from ._drives import SimulatedDrive
 from ._job import Job, RunReport
 from ._knots import insert_knots
 from ._log_files import load_log
@@ -79,6 +80,7 @@ __all__ = [
     "RunLog",
     "RunReport",
     "Samples",
+    "SimulatedDrive",
     "Singularity",
     "Stream",
     "StreamJob",

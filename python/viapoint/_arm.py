@@ -22,6 +22,9 @@ from .frames import Frame, Tool
 if TYPE_CHECKING:
     from ._points import PointList
 
+_REACH = 1e-3
+"""A hand begins within this of where the arm is measured [rad or m], as an encoder may step."""
+
 
 class Loop(Protocol):
     """What an arm needs of the controller: `_core.ControllerLoop`, or `VirtualLoop`."""
@@ -36,6 +39,8 @@ class Loop(Protocol):
     def jog_block(self) -> str: ...
     @property
     def measured(self) -> Vector: ...
+    @property
+    def observed(self) -> tuple[int, Vector, int, int]: ...
     @property
     def position(self) -> Vector: ...
     @property
@@ -281,7 +286,8 @@ class Arm:
         if isinstance(self._loop, (_core.ControllerLoop, VirtualLoop)):
             return self._loop
         raise BadArgumentError(
-            "The arm is driven by another process, which runs whole programs and tells no inputs.",
+            "The arm is driven by another process, which runs whole programs, and tells no inputs "
+            "and no hand.",
             ways_out=["Run a program, or connect to an arm of this process."],
         )
 
@@ -427,8 +433,66 @@ class Arm:
         points.record(name, joints, frame=frame)
         return joints
 
+    def guide(self, hand: Recording) -> None:
+        """Move the simulated arm by hand: it is where the samples say, noise and all.
+
+        The loop follows the hand as it would on an arm whose drives let it: the setpoint is where
+        the arm is measured, and runs and jogs are refused until the hand has let go at the last
+        sample. Returns at once; `record` meanwhile.
+
+        Parameters
+        ----------
+        hand : Recording
+            Where the hand takes the arm; it begins where the arm stands, within 0.001 rad or m.
+
+        Raises
+        ------
+        BadArgumentError
+            A hand for another number of joints, or one that begins elsewhere; an arm that is not
+            simulated in this process.
+        BusyError
+            A run is under way, or a hand guides the arm already.
+        """
+        loop = self._own_loop()
+        if not isinstance(hand, Recording):
+            raise BadArgumentError(f"hand is {hand!r}; it must be a Recording.")
+        if hand.robot.joints != self.robot.joints:
+            raise BadArgumentError(
+                f"The hand moves {hand.robot.joints} joints, the arm has {self.robot.joints}."
+            )
+        if loop.busy:
+            raise BusyError("A run is under way.", ways_out=["Wait for its end, or stop it."])
+        off = float(abs(hand.q[0] - loop.observed[1]).max())
+        if off > _REACH:
+            raise BadArgumentError(
+                f"The hand begins {off:.3g} rad or m from where the arm stands.",
+                ways_out=["Connect with the arm there: connect(…, start=hand.q[0])."],
+            )
+        loop.guide(list(hand.at_cycles(self._cycle)))
+
+    def let_go(self) -> None:
+        """Take the hand off the simulated arm, which stays where it is."""
+        self._own_loop().let_go()
+
+    @property
+    def guided(self) -> bool:
+        """True while a hand moves the arm: a simulated one, or one whose device says so."""
+        return self._own_loop().guided
+
+    @property
+    def datagrams(self) -> dict[str, int]:
+        """What has become of the datagrams to and from a UDP device; empty for other arms.
+
+        ``sent``, ``unsent``, ``answered``; ``silent`` cycles; and what was ignored: ``wrong_size``,
+        ``wrong_magic``, ``wrong_version``, ``wrong_joints``, ``old``.
+        """
+        return self._own_loop().datagrams
+
     def record(self, seconds: float, *, until: Callable[[], bool] | None = None) -> Recording:
-        """Record what the drives measure, once a cycle, while somebody guides the arm.
+        """Record what the drives measure and which outputs are on, while somebody guides the arm.
+
+        A sample a cycle, with the loop's own time stamp. A cycle that the script slept through is
+        left out; the times of the others stay right.
 
         Parameters
         ----------
@@ -447,4 +511,4 @@ class Arm:
         BadArgumentError
             Seconds that are no number above 0.
         """
-        return record(self, seconds, until, self._cycle)
+        return record(self._loop, self.robot, seconds, until, self._cycle)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,7 +14,11 @@ from ._run_log import RunLog
 from .errors import BadArgumentError
 
 _AT_REST = 1e-9
-"""Joint velocities below this [rad/s or m/s] are a rest."""
+"""Setpoints of a joint that differ by no more [rad or m] stand still."""
+_REST_CYCLES = 2
+"""So many cycles without a change are a rest; a reversal stands still for less."""
+_STATES_AT_REST = ("finished", "stopped", "paused", "waiting")
+"""States in which the last setpoint of a log rests."""
 _SAME_PLACE = 1e-6
 """Setpoints of two runs of one program differ by less [m]."""
 _SAME_LENGTH = 1e-3
@@ -36,13 +41,22 @@ class Attained:
         Where the setpoint rests.
     along : ndarray, (k,)
         How far along the path the setpoint is [m].
+    time : ndarray, (k,)
+        From the start of the run [s].
+    move : ndarray of int, (k,)
+        The program's step.
+    period : float
+        The cycle [s].
     """
 
     name: str
     told: Vector
     reached: Vector
-    resting: Vector
+    resting: npt.NDArray[np.bool_]
     along: Vector
+    time: Vector
+    move: npt.NDArray[np.int32]
+    period: float
 
     @classmethod
     def of(cls, log: RunLog, name: str) -> Attained:
@@ -64,8 +78,15 @@ class Attained:
             name=name,
             told=told,
             reached=reached,
-            resting=np.abs(log.qd[measured]).max(axis=1) < _AT_REST,
+            resting=_rests(
+                log.q[measured],
+                log.cycle[measured].astype(np.int64),
+                RunLog.STATES[log.state[measured][-1]] in _STATES_AT_REST,
+            ),
             along=np.concatenate([[0.0], np.cumsum(steps)]),
+            time=log.samples.t[measured],
+            move=log.move[measured],
+            period=log.period,
         )
 
     @property
@@ -80,12 +101,42 @@ class Attained:
         return ends[1:] if self.resting[0] else ends
 
 
+def _rests(q: Vector, cycle: npt.NDArray[np.int64], at_rest: bool) -> npt.NDArray[np.bool_]:
+    """Rows in which the setpoint stands still for two cycles or longer.
+
+    The last one counts where the run ends `at_rest`: what follows is not in the log.
+    """
+    still = np.abs(np.diff(q, axis=0)).max(axis=1, initial=0.0) <= _AT_REST
+    # A stretch of equal setpoints is from `begin` to before `end`; a single row is one, too.
+    edges = np.flatnonzero(~still) + 1
+    begins, ends = np.append(0, edges), np.append(edges, len(q))
+    resting = np.zeros(len(q), dtype=bool)
+    for begin, end in zip(begins, ends, strict=True):
+        resting[begin:end] = cycle[end - 1] - cycle[begin] >= _REST_CYCLES
+    resting[begins[-1] :] |= at_rest
+    return resting
+
+
 def _poses_of(log: RunLog, joints: Vector) -> Vector:
     poses = log.robot.fk(np.nan_to_num(joints))
     for first, robot in log.tools:
         now = log.move >= first
         poses[now] = robot.fk(np.nan_to_num(joints[now]))
     return poses
+
+
+def attained_runs(logs: Sequence[RunLog]) -> list[Attained]:
+    """Return what each log tells.
+
+    Raises
+    ------
+    BadArgumentError
+        No logs, or as `Attained.of`.
+    """
+    runs = [Attained.of(log, f"logs[{i}]") for i, log in enumerate(logs)]
+    if not runs:
+        raise BadArgumentError("logs is empty; give at least one log.")
+    return runs
 
 
 def attained_stops(runs: list[Attained]) -> tuple[list[Vector], list[Vector]]:

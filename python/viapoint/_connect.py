@@ -8,8 +8,9 @@ from urllib.parse import parse_qs, urlsplit
 import numpy as np
 
 from . import _core, _session
-from ._arguments import ArrayLike, Vector, number, vector
+from ._arguments import ArrayLike, Vector, integer, number, vector
 from ._arm import Arm
+from ._drives import SimulatedDrive, udp_device
 from ._motion import CYCLE
 from ._robot import Robot, load_robot, require_robot, require_within_limits
 from ._tls import TlsFiles
@@ -22,6 +23,8 @@ def connect(
     *,
     start: ArrayLike | None = None,
     robot: Robot | None = None,
+    drive: SimulatedDrive | None = None,
+    silent_cycles: int | None = None,
     cycle: float = CYCLE,
     tool_speed: float | None = None,
     workspace: tuple[ArrayLike, ArrayLike] | None = None,
@@ -37,10 +40,18 @@ def connect(
         follow: ``"sim://puma560?start=0,0.5,0,0,0,0"`` [rad or m]. ``"tcp://127.0.0.1:7420"``: the
         arm of a ``viapoint-controller`` in another process, which this script then has control of;
         its configuration says what the robot, the cycle and the guard are.
+        ``"udp://127.0.0.1:7500"``: a device that takes setpoints over UDP (docs/drives.md), under
+        the 2 ms C++ loop of this process; in virtual time a simulated arm stands in for it.
     start : array_like, (n,), optional
         Joints where the simulated arm stands [rad or m]. Default: all zero.
     robot : Robot, optional
-        Instead of loading the robot of the url: needed for other limits, and for `joint_robot`.
+        Instead of loading the robot of the url: needed for other limits, for `joint_robot`, and
+        for a device.
+    drive : SimulatedDrive, optional
+        How the simulated arm follows and measures. Default: exactly, one cycle later.
+    silent_cycles : int, optional
+        Cycles in a row that a device may leave unanswered, 0 to 10 000; then the arm stops on its
+        path. Default: 10.
     cycle : float
         The loop's cycle [s].
     tool_speed : float, optional
@@ -67,6 +78,8 @@ def connect(
     BadArgumentError
         Not such a url, a start that does not fit, a cycle that is not 0.1 ms to 1 s, limits of the
         tool for a robot without kinematics, a workspace whose ends are not in order.
+    DriveFaultError
+        The device does not answer or reports a fault.
     JointLimitError, CouplingLimitError
         A start outside the robot's limits.
     BadRobotError
@@ -79,32 +92,75 @@ def connect(
     period = number(cycle, "cycle", "s", least=1e-4, most=1.0)
     parts = urlsplit(url)
     if parts.scheme == "tcp":
-        told: dict[str, object] = {"start": start, "tool_speed": tool_speed, "workspace": workspace}
+        told: dict[str, object] = {
+            "start": start,
+            "drive": drive,
+            "silent_cycles": silent_cycles,
+            "tool_speed": tool_speed,
+            "workspace": workspace,
+        }
         if cycle != CYCLE:
             told["cycle"] = cycle
         return _connect_remote(url, told, robot, watch, tls)
     if watch or tls is not None:
         raise BadArgumentError('watch and tls are for a controller: connect("tcp://…").')
-    if parts.scheme != "sim" or not (parts.netloc or parts.path):
+    if drive is not None and not isinstance(drive, SimulatedDrive):
+        raise BadArgumentError(f"drive is {drive!r}; it must be a SimulatedDrive.")
+    silence = integer(10 if silent_cycles is None else silent_cycles, "silent_cycles", 0, 10_000)
+    virtual = _session.current().virtual
+    if parts.scheme == "udp":
+        if robot is None:
+            raise BadArgumentError(
+                "A device does not tell what robot it moves.",
+                ways_out=['Give it: connect("udp://…", robot=vp.load_robot("ur5e")).'],
+            )
+        if drive is not None or (start is not None and not virtual):
+            raise BadArgumentError(
+                "start and drive are for a simulated arm; a device tells where its arm stands."
+            )
+        arm_robot, device = robot, udp_device(url)
+    elif parts.scheme == "sim" and (parts.netloc or parts.path):
+        arm_robot, device = load_robot(parts.netloc + parts.path) if robot is None else robot, None
+    else:
         raise BadArgumentError(
-            f'url is "{url}"; it must be "sim://<robot>" or "tcp://<host>:<port>".',
+            f'url is "{url}"; it must be "sim://<robot>", "udp://<address>:<port>" or '
+            '"tcp://<host>:<port>".',
             ways_out=['For example connect("sim://puma560"), or connect("tcp://127.0.0.1:7420").'],
         )
-    arm_robot = load_robot(parts.netloc + parts.path) if robot is None else robot
-    joints = np.zeros(arm_robot.joints)
-    if start is not None:
-        joints = vector(start, "start", arm_robot.joints)
-    elif parts.query:
-        joints = _start_of(parts.query, arm_robot.joints)
-    require_within_limits(arm_robot, joints, "start", ["Say where the arm stands: start=[…]."])
     speed, low, high = _guarded(arm_robot, tool_speed, workspace)
-    if _session.current().virtual:
-        virtual = VirtualLoop(arm_robot, joints, period, speed, (low, high))
-        return Arm(arm_robot, virtual, period)
-    loop = _core.ControllerLoop(
-        arm_robot._core, joints, cycle=period, tool_speed=speed, box_min=low, box_max=high
+    setup: _core.SimulatedSetup | _core.UdpSetup
+    if device is None or virtual:
+        query = parts.query if device is None else ""
+        simulated = _simulated(arm_robot, start, query, drive or SimulatedDrive())
+        if virtual:
+            loop = VirtualLoop(arm_robot, simulated, period, speed, (low, high))
+            return Arm(arm_robot, loop, period)
+        setup = simulated
+    else:
+        setup = device
+    core = _core.ControllerLoop(
+        arm_robot._core,
+        setup,
+        cycle=period,
+        silent_cycles=silence,
+        tool_speed=speed,
+        box_min=low,
+        box_max=high,
     )
-    return Arm(arm_robot, loop, period)
+    return Arm(arm_robot, core, period)
+
+
+def _simulated(
+    robot: Robot, start: ArrayLike | None, query: str, drive: SimulatedDrive
+) -> _core.SimulatedSetup:
+    """Return the drive of an arm that stands at `start`, or as the url says."""
+    joints = np.zeros(robot.joints)
+    if start is not None:
+        joints = vector(start, "start", robot.joints)
+    elif query:
+        joints = _start_of(query, robot.joints)
+    require_within_limits(robot, joints, "start", ["Say where the arm stands: start=[…]."])
+    return drive.standing_at(joints)
 
 
 def _connect_remote(
@@ -117,7 +173,7 @@ def _connect_remote(
     for name, value in told.items():
         if value is not None:
             raise BadArgumentError(
-                f"{name} is for a simulated arm; a controller's is in its configuration."
+                f"{name} is for an arm of this process; a controller's is in its configuration."
             )
     try:
         from . import _remote_arm

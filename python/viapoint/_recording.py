@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import io
 import os
 import time
@@ -14,14 +15,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from . import _core, _session
+from . import _core
 from ._arguments import ArrayLike, Vector, file_name, number, numbers_of
 from ._log_files import robot_in
 from ._measure import Measure
 from ._playback import Playback, Stage
 from ._robot import Robot, require_robot, require_within_limits
 from ._run_log import RunLog
+from ._sample_table import read_table
 from ._smoothing import SmoothCurve, reversals, smooth
+from ._virtual import VirtualLoop
 from ._zone import Zone
 from .errors import (
     BadArgumentError,
@@ -32,8 +35,10 @@ from .errors import (
 )
 
 if TYPE_CHECKING:
-    from ._arm import Arm
+    from ._arm import Loop
 
+_PATIENCE = 1.0
+"""How much longer a recording may take than it is long [s]."""
 _QUICKEST = 0.05
 """Two reversals nearer than this in time [s] are none that a hand makes."""
 
@@ -113,8 +118,16 @@ class Recording:
         return cls.of_samples(log.robot, log.samples.t[seen], log.measured[seen], log.outputs[seen])
 
     @classmethod
-    def load(cls, path: str | os.PathLike[str]) -> Recording:
-        """Read the samples that `save` wrote, to the last bit.
+    def load(cls, path: str | os.PathLike[str], robot: Robot | None = None) -> Recording:
+        """Read the samples that `save` wrote, to the last bit; or a table of them.
+
+        Parameters
+        ----------
+        path : str or path
+            What `save` wrote; or, where it ends in ``.csv``, a table of text whose first line names
+            the columns ``t,q1,…,qn``, and ``outputs`` after these if it has them.
+        robot : Robot, optional
+            The arm of a table, which does not say it; not for another file.
 
         Raises
         ------
@@ -122,10 +135,25 @@ class Recording:
             There is no such file.
         BadProgramError
             It is damaged, or no recording.
+        BadArgumentError
+            A table without a robot, or a robot for a file that says it.
         """
         name = file_name(path)
         if not Path(name).is_file():
             raise FileError(f"There is no recording {name}.", file=name)
+        is_table = name.endswith(".csv")
+        if is_table != (robot is not None):
+            raise BadArgumentError(
+                "A table does not say what robot was guided: load(path, robot)."
+                if is_table
+                else "The recording says what robot was guided: load(path)."
+            )
+        if robot is not None:
+            arm = require_robot(robot)
+            try:
+                return cls.of_samples(arm, *read_table(name, arm.joints))
+            except (BadArgumentError, UnicodeDecodeError, csv.Error) as error:
+                raise BadProgramError(f"The table cannot be read: {error}", file=name) from error
         try:
             with Path(name).open("rb") as stream, np.load(stream, allow_pickle=False) as file:
                 arm = robot_in(str(file["robot"]))
@@ -163,6 +191,17 @@ class Recording:
     def duration(self) -> float:
         """From the first sample to the last [s]."""
         return float(self.t[-1] - self.t[0])
+
+    def at_cycles(self, period: float) -> Vector:
+        """Return joints at 0, period, 2 period, … [s] of the recording, (m, n), between samples.
+
+        Parameters
+        ----------
+        period : float
+            [s]
+        """
+        times = np.arange(self.t[0], self.t[-1] + 1e-9, period)
+        return np.column_stack([np.interp(times, self.t, joint) for joint in self.q.T])
 
     def fit(self, tolerance: float | Zone, *, angle_tolerance: float = 0.02) -> Playback:
         """Find a smooth path that passes every sample within the tolerance, and is proven to.
@@ -279,23 +318,48 @@ class Recording:
             )
 
 
-def record(arm: Arm, seconds: float, until: Callable[[], bool] | None, period: float) -> Recording:
-    """Read the drives every `period` [s]; see `Arm.record`."""
+def record(
+    loop: Loop,
+    robot: Robot,
+    seconds: float,
+    until: Callable[[], bool] | None,
+    period: float,
+) -> Recording:
+    """Take what every cycle measures; see `Arm.record`."""
     longest = number(seconds, "seconds", "s", above=0.0)
-    virtual = _session.current().virtual
-    begin = time.monotonic()
-    t, q = [0.0], [arm.joints]
-    while t[-1] < longest and not (until is not None and until()):
-        if virtual:  # time passes there by looking
-            t.append(t[-1] + period)
-        else:
-            time.sleep(max(0.0, begin + len(t) * period - time.monotonic()))
-            t.append(max(time.monotonic() - begin, t[-1] + 1e-6))
-        q.append(arm.joints)
-    if len(t) < 2:
-        t.append(period)
-        q.append(arm.joints)
-    return Recording.of_samples(arm.robot, t, q)
+    seen: list[tuple[int, Vector, int]] = []
+
+    def look() -> bool:
+        """Take the last cycle; False where it was taken before."""
+        stamp, q, _, outputs = loop.observed
+        is_new = not seen or stamp > seen[-1][0]
+        if is_new:
+            seen.append((stamp, q, outputs))
+        return is_new
+
+    def is_over() -> bool:
+        return 1e-9 * (seen[-1][0] - seen[0][0]) >= longest or (until is not None and until())
+
+    look()
+    if isinstance(loop, VirtualLoop):
+        loop.look = look
+        try:
+            while not is_over():
+                loop.pass_cycles(1)
+        finally:
+            loop.look = None
+    else:
+        # A loop that has failed has no more cycles.
+        end = time.monotonic() + longest + _PATIENCE
+        while time.monotonic() < end:
+            if look() and is_over():
+                break
+            time.sleep(0.5 * period)
+    if len(seen) < 2:
+        seen.append((seen[0][0] + round(1e9 * period), *seen[0][1:]))
+    t = [1e-9 * (stamp - seen[0][0]) for stamp, _, _ in seen]
+    outputs = np.array([on for _, _, on in seen], dtype=np.uint64)
+    return Recording.of_samples(robot, t, [q for _, q, _ in seen], outputs)
 
 
 def _moves_between(seen: Vector) -> tuple[int, int]:

@@ -202,6 +202,7 @@ class RemoteLoop:
     def __init__(self, wire: Wire, watch: bool) -> None:
         self._wire = wire
         self.about = self.call("GetRobot", message("GetRobotRequest"), "RobotReply")
+        _require_same_version(self.about.version)
         self.joints = len(self._state().setpoint)
         self.token = ""
         self._heart: Heart | None = None
@@ -213,7 +214,8 @@ class RemoteLoop:
 
     def _take_control(self) -> None:
         name = f"{_user()}@{socket.gethostname()}, process {os.getpid()}"
-        control = self.call("TakeControl", message("TakeControlRequest", name=name), "Control")
+        request = message("TakeControlRequest", name=name, version=_core.__version__)
+        control = self.call("TakeControl", request, "Control")
         self.token = control.token
         self._heart = Heart(self._wire, control)
         self._heart.start()
@@ -266,6 +268,12 @@ class RemoteLoop:
     def measured(self) -> Vector:
         """What the drive measured last, (n,)."""
         return np.array(self._state().measured)
+
+    @property
+    def observed(self) -> tuple[int, Vector, int, int]:
+        """Of the last cycle: its stamp [ns], joints (n,), inputs and outputs."""
+        now = self._state()
+        return now.stamp, np.array(now.measured), now.inputs, now.outputs
 
     @property
     def position(self) -> Vector:
@@ -339,6 +347,16 @@ class RemoteLoop:
             self.call("GiveUpControl", request, "GiveUpControlReply")
         except (NotInControlError, UnconnectedError):
             return  # lost meanwhile: the controller has seen to the arm by itself
+
+
+def _require_same_version(there: str) -> None:
+    """Refuse a controller of another major or minor version, whose words may mean other things."""
+    if there.split(".")[:2] != _core.__version__.split(".")[:2]:
+        raise UnconnectedError(
+            f"The controller has viapoint {there}, this script {_core.__version__}; the first two "
+            "numbers have to be the same.",
+            ways_out=[f'Install the controller\'s here: pip install "viapoint=={there}".'],
+        )
 
 
 def _parts_of(pieces: _core.MotionPieces) -> list[list[Message]]:

@@ -6,6 +6,7 @@ from urllib.parse import urlsplit
 
 from . import _core, _session
 from ._arm import Arm
+from ._drives import SimulatedDrive
 from ._job import Job
 from ._motion import Motion
 from ._remote import RemoteExecution, RemoteLoop
@@ -99,7 +100,9 @@ def connect_remote(url: str, robot: Robot | None, watch: bool, tls: TlsFiles | N
                 ways_out=["Leave robot out, and use arm.robot."],
             )
         if virtual:
-            stand_in = VirtualLoop(there, loop.position, loop.about.cycle)
+            stand_in = VirtualLoop(
+                there, SimulatedDrive().standing_at(loop.position), loop.about.cycle
+            )
             loop.close()
             return Arm(there, stand_in, loop.about.cycle)
         return RemoteArm(there, loop, loop.about.cycle)

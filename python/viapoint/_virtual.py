@@ -133,12 +133,14 @@ class VirtualLoop:
         [s]
     feed : callable, optional
         Called as time passes: hands over what a stream is to hand over.
+    look : callable, optional
+        Called after every cycle, while somebody records.
     """
 
     def __init__(
         self,
         robot: Robot,
-        start: Vector,
+        drive: _core.SimulatedSetup,
         cycle: float,
         tool_speed: float = math.inf,
         workspace: tuple[Vector, Vector] | None = None,
@@ -146,27 +148,44 @@ class VirtualLoop:
         beyond = np.full(3, math.inf)
         low, high = (-beyond, beyond) if workspace is None else workspace
         self.core = _core.VirtualLoop(
-            robot._core, start, cycle=cycle, tool_speed=tool_speed, box_min=low, box_max=high
+            robot._core,
+            drive,
+            cycle=cycle,
+            silent_cycles=0,
+            tool_speed=tool_speed,
+            box_min=low,
+            box_max=high,
         )
         self.cycle = cycle
         self.feed: Callable[[], None] | None = None
+        self.look: Callable[[], object] | None = None
         self._hold = math.ceil(_HOLD / cycle)
         self._run: VirtualExecution | None = None
         self._shortcomings: list[str] = []
 
     def pass_cycles(self, count: int) -> int:
         """Let time pass until a run ends or nothing moves; return how many cycles have passed."""
-        if self.feed is None:
+        if self.feed is None and self.look is None:
             return self.core.pass_cycles(count)
         passed = 0
         while passed < count:
-            part = min(_SLICE, count - passed)
+            part = 1 if self.look is not None else min(_SLICE, count - passed)
             passed += (came := self.core.pass_cycles(part))
+            if self.look is not None:
+                self.look()
             if self.feed is not None:
                 self.feed()
-            if came < part:
+            if came < part or (part == 1 and self._rests()):
                 break
         return passed
+
+    def _rests(self) -> bool:
+        """Tell whether nothing moves until somebody says so."""
+        if self.core.jogging or self.core.guided:
+            return False
+        return not self.core.busy or (
+            self._run is not None and self._run._job.state in ("paused", "waiting")
+        )
 
     def executed(self, job: _core.Job) -> VirtualExecution:
         """Return the run of `job`, which is the one under way."""
@@ -197,7 +216,7 @@ class VirtualLoop:
         if self._run is not None and self.core.busy:
             self._run.state  # noqa: B018 -- the look lets time pass
         else:
-            self.core.pass_cycles(self._hold)
+            self.pass_cycles(self._hold)
 
     @property
     def position(self) -> Vector:
@@ -217,8 +236,33 @@ class VirtualLoop:
 
     @property
     def measured(self) -> Vector:
-        """The same: nothing lags in virtual time."""
-        return self.position
+        """What the drive measured last, after a while has passed, (n,)."""
+        self._look()
+        return self.core.measured
+
+    @property
+    def observed(self) -> tuple[int, Vector, int, int]:
+        """Of the last cycle: its stamp [ns], joints (n,), inputs and outputs. No time passes."""
+        return self.core.observed
+
+    def guide(self, positions: list[Vector]) -> None:
+        """Move the arm by hand, a position (n,) a cycle."""
+        self.core.guide(positions)
+
+    def let_go(self) -> None:
+        """Take the hand off the arm."""
+        self.core.let_go()
+
+    @property
+    def guided(self) -> bool:
+        """True while a hand moves the arm, after a while has passed."""
+        self._look()
+        return self.core.guided
+
+    @property
+    def datagrams(self) -> dict[str, int]:
+        """None: nothing leaves the process."""
+        return {}
 
     @property
     def busy(self) -> bool:
@@ -276,18 +320,18 @@ class VirtualLoop:
         if self.core.busy:
             self._look()
         self.core.jog(velocity)
-        self.core.pass_cycles(self._hold)
+        self.pass_cycles(self._hold)
 
     @property
     def jogging(self) -> bool:
         """True until a jog has come to rest, after a while has passed."""
-        self.core.pass_cycles(self._hold)
+        self.pass_cycles(self._hold)
         return self.core.jogging
 
     @property
     def jog_block(self) -> str:
         """What keeps the jog from doing what was asked, after a while has passed."""
-        self.core.pass_cycles(self._hold)
+        self.pass_cycles(self._hold)
         return self.core.jog_block
 
     def close(self) -> None:
@@ -295,5 +339,5 @@ class VirtualLoop:
         if self._run is not None and self.core.is_open:
             self._run.stop(2)
             while self.core.busy:
-                self.core.pass_cycles(self._hold)
+                self.pass_cycles(self._hold)
         self.core.close()

@@ -275,7 +275,7 @@ class NotInControlError(BusyError):
 
 
 class UnconnectedError(DriveFaultError):
-    """A controller that cannot be reached, or does not answer."""
+    """A controller that cannot be reached, does not answer, or is of another version."""
 
 
 class PoseCorrectedWarning(UserWarning):

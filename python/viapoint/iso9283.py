@@ -1,4 +1,4 @@
-"""Accuracy and repeatability of poses and paths, as ISO 9283:1998 defines them, from logs of runs.
+"""How well poses, paths, speeds and corners are reached, by ISO 9283:1998, from logs of runs.
 
 Run one program several times, keep the logs, and ask::
 
@@ -23,17 +23,25 @@ from dataclasses import dataclass
 import numpy as np
 
 from ._arguments import ArrayLike, Vector, integer, numbers_of
-from ._attained import Attained, attained_path, attained_stops
+from ._attained import attained_path, attained_runs, attained_stops
+from ._cornering import Cornering, cornering, cornering_from_logs
+from ._path_velocity import PathVelocity, path_velocity, path_velocity_from_logs
 from ._rotation_vectors import rotation_vectors
 from ._run_log import RunLog
 from .errors import BadArgumentError
 
 __all__ = [
+    "Cornering",
     "PathAccuracy",
+    "PathVelocity",
     "PoseAccuracy",
     "Report",
+    "cornering",
+    "cornering_from_logs",
     "from_logs",
     "path_accuracy",
+    "path_velocity",
+    "path_velocity_from_logs",
     "pose_accuracy",
 ]
 
@@ -211,9 +219,7 @@ def from_logs(logs: Sequence[RunLog], *, places: int = 50) -> Report:
         or a run that never crosses one of the planes.
     """
     count = integer(places, "places", 1, 10_000)
-    runs = [Attained.of(log, f"logs[{i}]") for i, log in enumerate(logs)]
-    if not runs:
-        raise BadArgumentError("logs is empty; give at least one log.")
+    runs = attained_runs(logs)
     poses = [
         pose_accuracy(commanded, attained)
         for commanded, attained in zip(*attained_stops(runs), strict=True)

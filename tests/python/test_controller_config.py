@@ -6,6 +6,8 @@ from pathlib import Path
 
 import pytest
 
+import viapoint as vp
+
 WRONG = {
     "speed: 3": 'unknown key "speed"',
     "robot: ur5e": '"robot" is there twice',
@@ -24,6 +26,16 @@ WRONG = {
     "cycle: 0.01": "allowed are 40 cycles, 0.4 s, or more",
     "tool_speed: -1": "tool_speed: is -1",
     "drive: ethercat": '"ethercat" is no drive',
+    "drive: {}": "is no drive",
+    "drive: {simulated: {}, udp: 127.0.0.1:7500}": "is no drive",
+    "drive: {simulated: {lag: -1}}": "lag: is -1; allowed are 0 to 10 s",
+    "drive: {simulated: {noise: .nan}}": "noise: expected a number",
+    "drive: {simulated: {seed: -1}}": "seed: is -1; it must be 0 or more",
+    "drive: {simulated: {weight: 3}}": 'unknown key "weight"',
+    "drive: {udp: localhost:7500}": "no address and port in numbers",
+    "drive: {udp: 127.0.0.1:0}": "the device's port is 0",
+    "drive: {udp: 127.0.0.1:7500, silent_cycles: -1}": "silent_cycles: is -1; allowed are 0",
+    "start: [0, 0, 0, 0, 0, 0]\ndrive: {udp: 127.0.0.1:7500}": "is for a simulated drive",
     "start: [0, 0]": 'start has 2 values, "puma560" has 6 joints',
     "start: [0, 0, 0, 0, 0, .inf]": "not finite",
     "start: [9, 0, 0, 0, 0, 0]": "start of joint 1 is 9; allowed are",
@@ -96,3 +108,22 @@ def test_the_configuration_that_is_installed_is_one(serve):
         heartbeat=float(told["heartbeat"]),
     )
     assert served.end() == 0
+
+
+def test_names_that_are_relative_count_from_the_folder_of_the_configuration(
+    serve, tmp_path, monkeypatch
+):
+    """The controller is started somewhere else."""
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    monkeypatch.chdir(elsewhere)
+    (tmp_path / "logs").mkdir()
+    robot = vp.load_robot("puma560")
+    (tmp_path / "arm.yaml").write_text(robot._core.to_yaml(), encoding="utf-8")
+    served = serve(robot="./arm.yaml", logs="logs")
+    with vp.connect(served.url) as arm:
+        assert arm.robot.fingerprint == robot.fingerprint
+        arm.run(vp.Program(arm.robot, start=arm.setpoint).movej([0.05] * 6))
+    served.end()
+    assert list((tmp_path / "logs").glob("*.csv"))
+    assert not list(elsewhere.iterdir())

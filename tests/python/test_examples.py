@@ -30,6 +30,7 @@ SAYS = {
     "scara.py": ["finished", "gripper at"],
     "stacking.py": ["cube 3 at 200 mm", "the screw is 6 mm deep"],
     "teach_playback.py": ["seam.json holds above, seam start, seam end", "finished"],
+    "udp_drive.py": ["finished, at most"],
     "two_link.py": ["72.8856 -41.4096", "54.6642 -18.2214", "finished"],
 }
 

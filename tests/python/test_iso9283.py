@@ -77,6 +77,48 @@ def test_a_path_is_judged_where_it_is_worst():
     assert found.repeatability_at == 2
 
 
+def test_speeds_of_three_cycles():
+    """Means 1.1, 0.9, 1.3: v̄ 1.1, S² = (0 + 0.04 + 0.04) / 2; widest swing 0.3, in the last."""
+    found = iso9283.path_velocity(1.0, [[1.0, 1.2, 1.1], [0.9, 0.9], [1.15, 1.45]])
+    assert found.cycles == 3
+    assert found.attained == pytest.approx(1.1, rel=1e-12)
+    assert found.accuracy == pytest.approx(0.1, rel=1e-12)
+    assert found.repeatability == pytest.approx(3 * 0.2, rel=1e-12)
+    assert found.fluctuation == pytest.approx(0.3, rel=1e-12)
+    slow = iso9283.path_velocity(2.0, [[1.9]])
+    assert slow.accuracy == pytest.approx(-0.05)
+    assert np.isnan(slow.repeatability)
+    assert slow.fluctuation == 0.0
+
+
+def test_a_corner_that_is_cut_and_one_that_is_overshot():
+    """Up to the origin along y, then along z. Cut: from (0, -3, 0) to (0, 0, 4), 2.4 away at least.
+
+    Overshot: through the corner to y = 2, back to the leg; x = 0 at y = 2, and x = 1.5 at y = 2,
+    which is 2.5 from it; beyond the leg's end, and on the side it comes from, nothing counts.
+    """
+    legs = ((0, -10, 0), (0, 0, 0), (0, 0, 10))
+    cut = [[0, -10, 0], [0, -3, 0], [0, 0, 4], [0, 0, 10]]
+    over = [
+        *([0, -10, 0], [0, 0, 0], [0, 2, 1], [1.5, 2, 3], [0, -4, 5], [0, 0, 8], [0, 0, 11]),
+        [0, 9, 9],
+    ]
+    found = iso9283.cornering(*legs, [cut, over])
+    np.testing.assert_allclose(found.rounding_each, [2.4, 0.0], atol=1e-12)
+    np.testing.assert_allclose(found.overshoot_each, [0.0, 2.5], atol=1e-12)
+    assert (found.cycles, found.overshoot) == (2, 2.5)
+    assert found.rounding == pytest.approx(2.4)
+
+
+def test_a_corner_that_is_not_square():
+    """Legs at 135°: beyond the second one is across it, on the side that the first points to."""
+    after = np.array([-1.0, 1.0, 0.0])  # back at 45°
+    aside = np.array([1.0, 1.0, 0.0]) / np.sqrt(2)
+    way = [[-1, 0, 0], [0, 0, 0], 0.5 * after + 0.1 * aside, 0.8 * after - 0.3 * aside]
+    found = iso9283.cornering((-1, 0, 0), (0, 0, 0), after, [way])
+    assert found.overshoot == pytest.approx(0.1, rel=1e-12)
+
+
 @pytest.mark.parametrize(
     ("call", "says"),
     [
@@ -85,6 +127,16 @@ def test_a_path_is_judged_where_it_is_worst():
         (lambda: iso9283.pose_accuracy(np.eye(4), np.empty((0, 4, 4))), "attained has the shape"),
         (lambda: iso9283.path_accuracy([np.eye(4)], np.ones((2, 3, 4, 4))), r"must be \(n, 1"),
         (lambda: iso9283.from_logs([]), "logs is empty"),
+        (lambda: iso9283.path_velocity(0.0, [[1.0]]), "commanded is 0"),
+        (lambda: iso9283.path_velocity(1.0, []), "attained is empty"),
+        (lambda: iso9283.path_velocity(1.0, [[]]), r"attained\[0\] has the shape"),
+        (lambda: iso9283.cornering([0] * 3, [0] * 3, [1] * 3, [np.eye(3)]), "has no length"),
+        (lambda: iso9283.cornering([0] * 3, [1] * 3, [2] * 3, [np.eye(3)]), "lie in one line"),
+        (lambda: iso9283.cornering([0] * 3, [1] * 3, [2, 0, 0], []), "attained is empty"),
+        (
+            lambda: iso9283.cornering([0] * 3, [1] * 3, [2, 0, 0], [np.eye(2)]),
+            r"attained\[0\] has the shape",
+        ),
         (lambda: iso9283.from_logs([1]), r"logs\[0\] is 1"),
     ],
 )
@@ -145,6 +197,71 @@ def test_a_drive_that_is_late_stays_on_its_path(log):
     report = iso9283.from_logs([late, log], places=20)
     assert report.path.accuracy < 1e-6
     assert report.path.repeatability < 1e-6
+
+
+def test_the_speed_of_a_move_is_measured_on_its_middle_half():
+    """Told 0.1 m/s along y, and kept there; an arm whose way is 1 % longer is 1 % quicker."""
+    robot = vp.load_robot("ur5e")
+    home = np.radians([0, -90, 90, -90, -90, 0])
+    target = robot.fk(home)
+    target[1, 3] += 0.1
+    with vp.connect("sim://ur5e", start=home) as arm:
+        log = arm.run(vp.Program(robot, start=home).movel(target, process_speed=0.1)).log
+    log = replace(log, measured=log.q)
+    found = iso9283.path_velocity_from_logs([log, log], 0.1, move=0)
+    assert found.accuracy == pytest.approx(0.0, abs=1e-4)
+    assert found.repeatability == 0.0
+    assert found.fluctuation < 1e-5
+    stretched = off_by_share(log, 0.01)
+    found = iso9283.path_velocity_from_logs([stretched], 0.1, move=0)
+    assert found.accuracy == pytest.approx(0.01, rel=1e-2)
+    with pytest.raises(errors.BadArgumentError, match="nothing of move 77"):
+        iso9283.path_velocity_from_logs([log], 0.1, move=77)
+    with pytest.raises(errors.BadArgumentError, match="shorter `over`"):
+        iso9283.path_velocity_from_logs([log], 0.1, move=0, over=100.0)
+
+
+def off_by_share(log, share):
+    """Return the log of an arm that goes farther along y by a share, nearly."""
+    steps = []
+    for q, pose in zip(log.q, log.samples.pose, strict=True):
+        aside = np.array([0, share * (pose[1, 3] - log.samples.pose[0, 1, 3]), 0, 0, 0, 0])
+        steps.append(np.linalg.solve(log.robot.jacobian(q), aside))
+    return replace(log, measured=log.q + np.array(steps))
+
+
+def test_a_blended_corner_is_cut_by_what_the_zone_says():
+    robot = vp.load_robot("ur5e")
+    home = np.radians([0, -90, 90, -90, -90, 0])
+    corner, end = robot.fk(home), robot.fk(home)
+    corner[1, 3] += 0.1
+    end[:3, 3] += (0.1, 0.1, 0)
+    program = vp.Program(robot, start=home).movel(corner, zone=vp.deviation(0.004)).movel(end)
+    with vp.connect("sim://ur5e", start=home) as arm:
+        log = arm.run(program).log
+    places = robot.fk(home)[:3, 3], corner[:3, 3], end[:3, 3]
+    found = iso9283.cornering_from_logs([replace(log, measured=log.q)], *places)
+    assert 0.5e-3 < found.rounding <= 0.004 + 1e-6
+    assert found.overshoot == pytest.approx(0.0, abs=1e-5)
+
+
+def test_a_slow_creep_is_no_rest_and_a_reversal_neither(log):
+    """Rests are where the setpoint stands still for two cycles, whatever its velocity says."""
+    from viapoint._attained import _rests
+
+    cycle = np.arange(9)
+    creep = np.arange(9.0)[:, None] * 2e-9
+    assert not _rests(creep, cycle, at_rest=False).any()
+    assert _rests(creep, cycle, at_rest=True).tolist() == [False] * 8 + [True]
+    turn = np.array([0.0, 1, 2, 2, 1, 0, 0, 0, 1])[:, None]
+    assert _rests(turn, cycle, at_rest=False).tolist() == [False] * 5 + [True] * 3 + [False]
+    # A long rest of which the log keeps the first two cycles.
+    kept = np.array([0.0, 1, 1, 2, 3])[:, None]
+    assert not _rests(kept, np.array([0, 1, 2, 3, 4]), at_rest=False).any()
+    kept = np.array([0.0, 1, 1, 1, 3])[:, None]
+    assert _rests(kept, np.array([0, 1, 2, 30, 31]), at_rest=False).tolist() == [
+        *(False, True, True, True, False)
+    ]
 
 
 def test_logs_of_another_program_are_refused(log):

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 import viapoint as vp
+from viapoint import _core
 from viapoint.errors import (
     BadArgumentError,
     BusyError,
@@ -263,9 +264,9 @@ def test_a_released_drive_is_enabled_for_the_next_connection(url):
         ("tcp://127.0.0.1", {}, "tcp://<host>:<port>"),
         ("tcp://127.0.0.1:x", {}, "tcp://<host>:<port>"),
         ("tcp://127.0.0.1:7420/arm", {}, "tcp://<host>:<port>"),
-        ("tcp://127.0.0.1:7420", {"start": [0] * 6}, "start is for a simulated arm"),
-        ("tcp://127.0.0.1:7420", {"tool_speed": 0.25}, "tool_speed is for a simulated arm"),
-        ("tcp://127.0.0.1:7420", {"cycle": 0.001}, "cycle is for a simulated arm"),
+        ("tcp://127.0.0.1:7420", {"start": [0] * 6}, "start is for an arm of this process"),
+        ("tcp://127.0.0.1:7420", {"tool_speed": 0.25}, "tool_speed is for an arm of this process"),
+        ("tcp://127.0.0.1:7420", {"cycle": 0.001}, "cycle is for an arm of this process"),
         ("sim://puma560", {"watch": True}, "for a controller"),
     ],
 )
@@ -325,3 +326,28 @@ def test_the_scripts_of_the_document_run(serve, script, tmp_path):
         check=False,
     )
     assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize("watch", [False, True])
+def test_a_script_of_another_version_is_refused_with_both_named(url, monkeypatch, watch):
+    there = vp.__version__
+    monkeypatch.setattr(_core, "__version__", "7.3.1")
+    with pytest.raises(
+        UnconnectedError, match=rf"viapoint {re.escape(there)}, this script 7\.3\.1"
+    ):
+        vp.connect(url, watch=watch)
+    patch = ".".join([*there.split(".")[:2], "99"])  # the last number may differ
+    monkeypatch.setattr(_core, "__version__", patch)
+    with vp.connect(url, watch=watch) as arm:
+        assert arm.operator or watch
+
+
+def test_the_controller_refuses_a_script_of_another_version_by_itself(url, monkeypatch):
+    from viapoint import _remote
+
+    monkeypatch.setattr(_remote, "_require_same_version", lambda there: None)
+    monkeypatch.setattr(_core, "__version__", "7.3.1")
+    with pytest.raises(BadArgumentError, match=r"has viapoint 7\.3\.1, the controller 0\."):
+        vp.connect(url)
+    with vp.connect(url, watch=True) as arm:
+        assert arm.operator == ""

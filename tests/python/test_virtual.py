@@ -157,8 +157,9 @@ def test_a_jog_in_virtual_time_needs_a_start_and_a_cycle(puma):
         with pytest.raises(errors.BadArgumentError):
             _core.VirtualLoop(
                 puma._core,
-                start,
+                _core.SimulatedSetup(start),
                 cycle=cycle,
+                silent_cycles=0,
                 tool_speed=np.inf,
                 box_min=[-np.inf] * 3,
                 box_max=[np.inf] * 3,

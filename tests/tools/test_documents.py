@@ -69,3 +69,10 @@ def test_every_tool_is_in_the_daily_commands():
     ]
     assert tools != []
     assert [tool for tool in tools if f"./tools/{tool}" not in text] == []
+
+
+def test_the_drive_of_the_documents_is_the_one_that_is_tested():
+    page = (ROOT / "docs/drives.md").read_text(encoding="utf-8")
+    tested = (ROOT / "tests/cpp/drives/cia402_drive.hpp").read_text(encoding="utf-8")
+    shown = tested.split("// [docs/drives.md]\n")[1]
+    assert f"```cpp\n{shown}```" in page

@@ -135,6 +135,8 @@ void ControllerLoop::switch_outputs(std::uint64_t mask, std::uint64_t values) {
   impl_->desk.channels().switches.set(mask, values);
 }
 
+bool ControllerLoop::guided() const { return impl_->desk.is_guided(); }
+
 bool ControllerLoop::busy() const {
   const auto job = impl_->desk.job();
   return job != nullptr && !job->ended();

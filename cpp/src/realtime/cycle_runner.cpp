@@ -72,6 +72,7 @@ void CycleRunner::do_cycle() noexcept VIAPOINT_NONBLOCKING {
   const std::int64_t end = clock_.now();
   const DriveStatus status = drive_.exchange(setpoint_, measurement_);
   guard_.look_at(status, measurement_, late_cycles_);
+  if (status == DriveStatus::kGuided) follow_hand();
   const bool is_dead = status == DriveStatus::kFault || status == DriveStatus::kPowerLost;
   const bool fault = is_dead || is_at_rest;
   if (fault) interpolator_.abandon();
@@ -79,6 +80,8 @@ void CycleRunner::do_cycle() noexcept VIAPOINT_NONBLOCKING {
                           std::memory_order_release);
   channels_.jog_block.store(interpolator_.jog_block(), std::memory_order_relaxed);
   show();
+  // Last: who sees the hand off the arm sees the setpoint where it has left it.
+  channels_.guided.store(status == DriveStatus::kGuided, std::memory_order_release);
   record(end - begin);
   if (motion_ != nullptr && off_path_) {
     motion_->state.store(RunState::kStopping, std::memory_order_release);
@@ -113,6 +116,13 @@ void CycleRunner::fail(DriveStatus status) noexcept VIAPOINT_NONBLOCKING {
   motion_->state.store(RunState::kFault, std::memory_order_release);
   channels_.motions.give_back(motion_);
   motion_ = nullptr;
+}
+
+void CycleRunner::follow_hand() noexcept VIAPOINT_NONBLOCKING {
+  if (motion_ != nullptr || interpolator_.jogging() || off_path_) return guard_.refuse_hand();
+  if (guard_.breach().any()) return;
+  interpolator_.stand_at(measurement_.q);
+  guard_.stand_at(measurement_.q);
 }
 
 void CycleRunner::jog() noexcept VIAPOINT_NONBLOCKING {

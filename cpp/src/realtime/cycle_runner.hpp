@@ -40,6 +40,7 @@ struct LoopChannels {
   OutputSwitches switches;                  ///< ordinary threads
   std::atomic<bool> jogging{false};         ///< tick
   std::atomic<JogBlock> jog_block{};        ///< tick
+  std::atomic<bool> guided{false};          ///< tick: a hand moves the arm
   std::atomic<double> override_share{1.0};  ///< ordinary threads
   std::atomic<Lease> lease{};               ///< ordinary threads
   std::atomic<bool> quit{false};            ///< ordinary threads
@@ -80,6 +81,8 @@ class CycleRunner {
   void begin_next() noexcept VIAPOINT_NONBLOCKING;
   /// Gives back a motion that was queued while the drive failed or was released.
   void refuse_next() noexcept VIAPOINT_NONBLOCKING;
+  /// Lets the setpoints follow an arm that is moved by hand.
+  void follow_hand() noexcept VIAPOINT_NONBLOCKING;
   /// The guard's last word on the setpoint; true where the arm rests after a breach.
   [[nodiscard]] bool guard() noexcept VIAPOINT_NONBLOCKING;
   /// Ends everything: nothing is told the drive any more.

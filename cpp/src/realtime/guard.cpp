@@ -158,6 +158,7 @@ void Guard::look_at(DriveStatus status, const Measurement& measurement,
       note({Kind::kEncoder, i, step, most});
       break;
     }
+    if (status == DriveStatus::kGuided) continue;
     const double behind = measurement.q[i] - q_[i];
     const double allowed = v * options_.following + kEncoderNoise;
     if (!is_within(behind, allowed)) {
@@ -168,6 +169,17 @@ void Guard::look_at(DriveStatus status, const Measurement& measurement,
   silent_ = 0;
   unseen_cycles_ = 0.0;
   measured_ = measurement.q;
+}
+
+void Guard::stand_at(const JointVector& position) noexcept VIAPOINT_NONBLOCKING {
+  q_ = position;
+  qd_.setZero();
+  qdd_.setZero();
+  if (holds_tool_) tool_ = options_.kinematics->pose(q_).translation();
+}
+
+void Guard::refuse_hand() noexcept VIAPOINT_NONBLOCKING {
+  if (!breach_.any()) breach_ = {Breach::Kind::kGuided, -1, 0.0, 0.0};
 }
 
 void Guard::begin_stop() noexcept VIAPOINT_NONBLOCKING {
@@ -238,6 +250,8 @@ std::string text_of(const Breach& breach) {
       return joint + " was measured to jump" + pair;
     case Kind::kSilent:
       return "the drive has not answered for " + number_text(breach.value) + " cycles";
+    case Kind::kGuided:
+      return "a hand guided the arm while it was told to move";
     case Kind::kDrive:
       return "the drive reported a fault";
     case Kind::kPowerLost:

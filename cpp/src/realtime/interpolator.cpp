@@ -105,6 +105,10 @@ void Interpolator::wish(Wish wish) noexcept VIAPOINT_NONBLOCKING {
   step_move_ = kNoMove;
 }
 
+void Interpolator::stand_at(const JointVector& position) noexcept VIAPOINT_NONBLOCKING {
+  if (!active() && !jogging()) position_ = position;
+}
+
 void Interpolator::abandon() noexcept VIAPOINT_NONBLOCKING {
   motion_ = nullptr;
   jog_.abandon();

@@ -53,6 +53,7 @@ RunDesk::RunDesk(std::unique_ptr<Drive> drive, const JointLimits& limits,
   LoopCycle start;
   start.q = powered_.start().q;
   start.measurement = powered_.start();
+  start.stamp = clock_->now();
   channels_.snapshot.write(start);
 }
 
@@ -70,6 +71,7 @@ std::shared_ptr<LoopJob> RunDesk::run(std::shared_ptr<const Trajectory> trajecto
     throw MotionError(ErrorCode::kBusy, "the arm is being jogged",
                       {"stop the jog, and wait until the arm rests"});
   }
+  require_no_hand();
   admit(*trajectory, limits_, channels_.snapshot.read().q);
   auto job = std::make_shared<LoopJob>(std::move(trajectory), limits_, log_records_, open);
   if (last_word) last_word();
@@ -93,7 +95,13 @@ void RunDesk::jog(const JointVector& velocity) {
                       "a run is under way, and the arm jogs only between runs and in a pause",
                       {"wait for its end", "pause it and wait until it rests", "stop it first"});
   }
+  require_no_hand();
   channels_.jog.write(velocity);
+}
+
+bool RunDesk::is_guided() const {
+  return channels_.guided.load(std::memory_order_acquire) &&
+         !channels_.faulted.load(std::memory_order_acquire);
 }
 
 bool RunDesk::jogs() const {
@@ -111,6 +119,12 @@ void RunDesk::set_override(double share) {
                       {"give a share of the programmed speed, e.g. 0.5"});
   }
   channels_.override_share.store(share, std::memory_order_relaxed);
+}
+
+void RunDesk::require_no_hand() const {
+  if (!is_guided()) return;
+  throw MotionError(ErrorCode::kBusy, "the arm is guided by hand",
+                    {"let go of it, and wait until it is not guided any more"});
 }
 
 void RunDesk::require_no_fault() {

@@ -33,6 +33,8 @@ class RunDesk {
   /// A jog that is under way, or wished and not begun. A drive that failed or was released jogs no
   /// more.
   [[nodiscard]] bool jogs() const;
+  /// A hand moves the arm.
+  [[nodiscard]] bool is_guided() const;
   /// As ControllerLoop::set_override.
   void set_override(double share);
   /// What has failed; empty while nothing has.
@@ -53,6 +55,7 @@ class RunDesk {
 
  private:
   void require_no_fault();
+  void require_no_hand() const;
   [[nodiscard]] bool busy() const;
   void await_log_of_ended_run() const;
   [[nodiscard]] std::string fault_of_run();

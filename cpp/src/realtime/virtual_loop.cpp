@@ -22,7 +22,7 @@ int VirtualLoop::pass(int cycles) {
     desk_->runner().cycle();
     desk_->see_to();
     ++passed;
-    if (desk_->jogs()) continue;
+    if (desk_->jogs() || desk_->is_guided()) continue;
     if (!runs || job->ended()) break;
     const RunState state = job->state();
     if (state == RunState::kPaused || state == RunState::kWaiting) break;
@@ -48,6 +48,8 @@ double VirtualLoop::override_share() const {
   return desk_->channels().override_share.load(std::memory_order_relaxed);
 }
 Measurement VirtualLoop::measured() const { return desk_->channels().snapshot.read().measurement; }
+LoopCycle VirtualLoop::newest_cycle() const { return desk_->channels().snapshot.read(); }
+bool VirtualLoop::guided() const { return desk_->is_guided(); }
 bool VirtualLoop::busy() const {
   const auto job = desk_->job();
   return job != nullptr && !job->ended();

@@ -41,7 +41,11 @@ bool has_ended(const Job& job) {
 HostStatus look_at(const ControllerLoop& loop) {
   HostStatus status;
   status.setpoint = loop.position();
-  status.measured = loop.measured().q;
+  const LoopCycle now = loop.newest_cycle();
+  status.measured = now.measurement.q;
+  status.stamp = now.stamp;
+  status.inputs = now.measurement.inputs;
+  status.outputs = now.outputs;
   status.override_share = loop.override_share();
   status.busy = loop.busy();
   status.jogging = loop.jogging();

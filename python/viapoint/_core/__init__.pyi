@@ -42,12 +42,14 @@ __all__: list[str] = [
     "RobotModel",
     "RtdeService",
     "RunReport",
+    "SimulatedSetup",
     "Singularity",
     "Stream",
     "Target",
     "TcpCalibration",
     "ToolCalibration",
     "ToolExtrema",
+    "UdpSetup",
     "VelocityEllipsoid",
     "VirtualLoop",
     "WantedLeg",
@@ -1305,26 +1307,66 @@ class Job:
     @property
     def state(self) -> str: ...
 
+class SimulatedSetup:
+    """
+    An arm simulated in this process.
+    """
+    def __init__(
+        self,
+        start: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        *,
+        lag: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+        resolution: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+        noise: typing.SupportsFloat | typing.SupportsIndex = 0.0,
+        seed: typing.SupportsInt | typing.SupportsIndex = 0,
+    ) -> None: ...
+
+class UdpSetup:
+    """
+    A device that takes setpoints over UDP.
+    """
+    def __init__(
+        self,
+        host: str,
+        port: typing.SupportsInt | typing.SupportsIndex,
+        *,
+        patience: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> None: ...
+
 class ControllerLoop:
     """
-    The 2 ms loop over a simulated drive.
+    The 2 ms loop over a drive.
     """
     def __init__(
         self,
         robot: RobotModel,
-        start: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        drive: SimulatedSetup | UdpSetup,
         *,
         cycle: typing.SupportsFloat | typing.SupportsIndex,
+        silent_cycles: typing.SupportsInt | typing.SupportsIndex,
         tool_speed: typing.SupportsFloat | typing.SupportsIndex,
         box_min: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"],
         box_max: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"],
     ) -> None: ...
     def close(self) -> None: ...
+    def guide(
+        self,
+        positions: collections.abc.Sequence[
+            typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
+        ],
+    ) -> None:
+        """
+        A hand takes the simulated arm there, a position a cycle.
+        """
     def jog(
         self, velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
     ) -> None:
         """
         Joint velocities for the next 250 ms.
+        """
+    def let_go(self) -> None:
+        """
+        The hand lets go of the simulated arm.
         """
     def run(self, motion: PlannedMotion) -> Job: ...
     def set_inputs(
@@ -1338,9 +1380,13 @@ class ControllerLoop:
     @property
     def busy(self) -> bool: ...
     @property
+    def datagrams(self) -> dict[str, int]: ...
+    @property
     def fault(self) -> str: ...
     @property
     def fault_cycles(self) -> Log: ...
+    @property
+    def guided(self) -> bool: ...
     @property
     def inputs(self) -> int: ...
     @property
@@ -1351,6 +1397,13 @@ class ControllerLoop:
     def jogging(self) -> bool: ...
     @property
     def measured(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
+    @property
+    def observed(
+        self,
+    ) -> tuple[int, typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"], int, int]:
+        """
+        Of the last cycle: stamp [ns], joints, inputs, outputs.
+        """
     @property
     def override(self) -> float: ...
     @override.setter
@@ -1367,19 +1420,33 @@ class VirtualLoop:
     def __init__(
         self,
         robot: RobotModel,
-        start: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"],
+        drive: SimulatedSetup | UdpSetup,
         *,
         cycle: typing.SupportsFloat | typing.SupportsIndex,
+        silent_cycles: typing.SupportsInt | typing.SupportsIndex,
         tool_speed: typing.SupportsFloat | typing.SupportsIndex,
         box_min: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"],
         box_max: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"],
     ) -> None: ...
     def close(self) -> None: ...
+    def guide(
+        self,
+        positions: collections.abc.Sequence[
+            typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
+        ],
+    ) -> None:
+        """
+        A hand takes the simulated arm there, a position a cycle.
+        """
     def jog(
         self, velocity: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[m, 1]"]
     ) -> None:
         """
         Joint velocities for the next 250 ms.
+        """
+    def let_go(self) -> None:
+        """
+        The hand lets go of the simulated arm.
         """
     def pass_cycles(self, count: typing.SupportsInt | typing.SupportsIndex) -> int:
         """
@@ -1397,7 +1464,11 @@ class VirtualLoop:
     @property
     def busy(self) -> bool: ...
     @property
+    def datagrams(self) -> dict[str, int]: ...
+    @property
     def fault(self) -> str: ...
+    @property
+    def guided(self) -> bool: ...
     @property
     def inputs(self) -> int: ...
     @property
@@ -1408,6 +1479,13 @@ class VirtualLoop:
     def jogging(self) -> bool: ...
     @property
     def measured(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
+    @property
+    def observed(
+        self,
+    ) -> tuple[int, typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"], int, int]:
+        """
+        Of the last cycle: stamp [ns], joints, inputs, outputs.
+        """
     @property
     def override(self) -> float: ...
     @override.setter

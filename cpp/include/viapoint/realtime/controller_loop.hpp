@@ -166,6 +166,9 @@ class ControllerLoop {
   [[nodiscard]] LoopCycle newest_cycle() const;
   /// What the drive last measured.
   [[nodiscard]] Measurement measured() const;
+  /// True while a hand moves the arm (DriveStatus::kGuided): the setpoint is where it is measured,
+  /// and runs and jogs are refused (kBusy).
+  [[nodiscard]] bool guided() const;
   [[nodiscard]] bool busy() const;
   /// Where the loop's set-point rests now.
   [[nodiscard]] JointVector position() const;

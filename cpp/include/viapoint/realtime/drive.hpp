@@ -27,6 +27,7 @@ enum class DriveStatus {
   kFault,
   kSilent,     ///< no answer this cycle: nothing was measured
   kPowerLost,  ///< the power went (stop category 0): the arm is where it was measured last
+  kGuided,     ///< a hand moves the arm, and setpoints are not followed; the loop follows the hand
 };
 
 /// One arm's drives. enable() and release() are called from ordinary threads with the loop at

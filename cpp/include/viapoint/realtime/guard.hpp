@@ -50,6 +50,7 @@ struct Breach {
     kFollowing,  ///< the arm is too far from its setpoint
     kEncoder,    ///< what is measured jumps
     kSilent,     ///< the drive does not answer
+    kGuided,     ///< a hand moves the arm, which was told to move
     // The drive's own: nothing is told it any more.
     kDrive,
     kPowerLost,
@@ -61,7 +62,7 @@ struct Breach {
   [[nodiscard]] bool any() const noexcept { return kind != Kind::kNone; }
   /// False where the arm stops, or has stopped, off its path.
   [[nodiscard]] bool path_is_held() const noexcept {
-    return kind >= Kind::kBox && kind <= Kind::kSilent;
+    return kind >= Kind::kBox && kind <= Kind::kGuided;
   }
 };
 
@@ -98,6 +99,10 @@ class Guard {
   ///        much longer to move
   void look_at(DriveStatus status, const Measurement& measurement,
                std::int64_t late_cycles = 0) noexcept VIAPOINT_NONBLOCKING;
+  /// The arm rests where a hand holds it, (n,), and so do the setpoints from now on.
+  void stand_at(const JointVector& position) noexcept VIAPOINT_NONBLOCKING;
+  /// A hand moves the arm, although it was told to move.
+  void refuse_hand() noexcept VIAPOINT_NONBLOCKING;
   /// The first breach.
   [[nodiscard]] const Breach& breach() const noexcept { return breach_; }
 

@@ -91,6 +91,10 @@ class Interpolator {
   /// How long a wish to jog counts without being renewed.
   static constexpr std::chrono::milliseconds kJogLease{250};
 
+  /// Holds this position (n,) from the next tick on, for an arm that was moved by hand. Ignored
+  /// while a motion is active or jogging.
+  void stand_at(const JointVector& position) noexcept VIAPOINT_NONBLOCKING;
+
   /// Drops the motion or jog on the spot, for a drive that has failed; then state kFault.
   void abandon() noexcept VIAPOINT_NONBLOCKING;
 

@@ -36,6 +36,8 @@ class VirtualLoop {
   void set_override(double share);
   [[nodiscard]] double override_share() const;
   [[nodiscard]] Measurement measured() const;
+  [[nodiscard]] LoopCycle newest_cycle() const;
+  [[nodiscard]] bool guided() const;
   [[nodiscard]] bool busy() const;
   [[nodiscard]] JointVector position() const;
   [[nodiscard]] std::string fault() const;

@@ -19,8 +19,11 @@ namespace viapoint {
 
 /// What anybody may know of the arm.
 struct HostStatus {
-  JointVector setpoint;  ///< (n,) [rad or m]
-  JointVector measured;  ///< (n,) [rad or m]
+  JointVector setpoint;       ///< (n,) [rad or m]
+  JointVector measured;       ///< (n,) [rad or m]
+  std::int64_t stamp = 0;     ///< of the loop's clock, of the cycle that measured it [ns]
+  std::uint64_t inputs = 0;   ///< measured in that cycle, bit i is input i
+  std::uint64_t outputs = 0;  ///< told in that cycle, bit i is output i
   double override_share = 1.0;
   bool busy = false, jogging = false;
   std::string jog_block;  ///< as ControllerLoop::jog_block
