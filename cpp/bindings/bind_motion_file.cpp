@@ -1,6 +1,7 @@
 // Everything that a motion file holds, as plain arrays: the pieces that run, the curves they were
 // made for, and the chain of the arm.
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -183,14 +184,25 @@ class MotionPieces {
     for (const TrajectoryPiece& piece : pieces_) out.push_back(piece.move);
     return out;
   }
-  /// (piece, output, value) of every change.
-  [[nodiscard]] std::vector<std::tuple<int, int, bool>> outputs() const {
-    std::vector<std::tuple<int, int, bool>> out;
+  /// (piece, output, value, time) of every change.
+  [[nodiscard]] std::vector<std::tuple<int, int, bool, double>> outputs() const {
+    std::vector<std::tuple<int, int, bool, double>> out;
     for (size_t k = 0; k < pieces_.size(); ++k) {
       for (int i = 0; i < pieces_[k].outputs; ++i) {
         const OutputChange& change = pieces_[k].output[static_cast<size_t>(i)];
-        out.emplace_back(static_cast<int>(k), change.index, change.value);
+        out.emplace_back(static_cast<int>(k), change.index, change.value, change.time);
       }
+    }
+    return out;
+  }
+  /// (piece, input, value, time-out or none) of every wait for an input.
+  [[nodiscard]] std::vector<std::tuple<int, int, bool, std::optional<double>>> waits() const {
+    std::vector<std::tuple<int, int, bool, std::optional<double>>> out;
+    for (const size_t k : motion_.trajectory->waits()) {
+      const InputWait& wait = pieces_[k].wait;
+      std::optional<double> timeout;
+      if (std::isfinite(wait.timeout)) timeout = wait.timeout;
+      out.emplace_back(static_cast<int>(k), wait.input, wait.value, timeout);
     }
     return out;
   }
@@ -214,7 +226,9 @@ void bind_motion_file(py::module_& m) {
       .def_property_readonly("timing", &MotionPieces::timing, "Of x^k of every piece, (k, 6).")
       .def_property_readonly("moves", &MotionPieces::moves, "Program step, (k,).")
       .def_property_readonly("outputs", &MotionPieces::outputs,
-                             "Piece, output and value of every change.");
+                             "Piece, output, value and time [s] of every change.")
+      .def_property_readonly("waits", &MotionPieces::waits,
+                             "Piece, input, value and time-out [s] of every wait for an input.");
   py::class_<WantedLeg>(m, "WantedLeg", "What a program asks of one move.")
       .def_readonly("move", &WantedLeg::move, "Program step.")
       .def_property_readonly(

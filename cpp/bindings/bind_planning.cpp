@@ -282,6 +282,7 @@ void bind_planning(py::module_& m) {
       py::arg("robot"), py::arg("program"), py::call_guard<py::gil_scoped_release>(),
       "Plans; raises the first error of the report.");
   const LineTolerance defaults;
+  m.attr("MOST_OUTPUT_TIME") = kMostOutputTime;
   m.attr("POSITION_TOLERANCE") = defaults.position;
   m.attr("ANGLE_TOLERANCE") = defaults.angle;
 }

@@ -231,10 +231,18 @@ void bind_program(py::module_& m) {
           py::arg("seconds"), py::arg("file"), py::arg("line"))
       .def(
           "add_set_do",
-          [](MotionProgram& p, int index, bool value, std::string file, int line) {
-            append(p, SetOutput{index, value}, {}, std::move(file), line);
+          [](MotionProgram& p, int index, bool value, double distance, double time,
+             std::string file, int line) {
+            append(p, SetOutput{index, value, distance, time}, {}, std::move(file), line);
           },
-          py::arg("index"), py::arg("value"), py::arg("file"), py::arg("line"))
+          py::arg("index"), py::arg("value"), py::arg("distance"), py::arg("time"), py::arg("file"),
+          py::arg("line"))
+      .def(
+          "add_wait_di",
+          [](MotionProgram& p, int index, bool value, std::optional<double> timeout,
+             std::string file,
+             int line) { append(p, WaitInput{index, value, timeout}, {}, std::move(file), line); },
+          py::arg("index"), py::arg("value"), py::arg("timeout"), py::arg("file"), py::arg("line"))
       .def(
           "add_set_frame",
           [](MotionProgram& p, const Eigen::Matrix4d& pose, std::string name, std::string file,

@@ -138,7 +138,7 @@ py::class_<HandleOf<Loop>> bind_loop(py::module_& m, const char* name, const cha
   return loop;
 }
 
-/// @param values the share of an override, the velocities of a jog, else nothing
+/// @param values the share of an override, the velocities of a jog, an input and its value
 TimedCommand command_from(double time, const std::string& kind, const Vector& values, int joints) {
   using Kind = TimedCommand::Kind;
   if (!std::isfinite(time) || time < 0.0) {
@@ -156,14 +156,17 @@ TimedCommand command_from(double time, const std::string& kind, const Vector& va
     }
     return {time, Kind::kOverride, value, {}};
   }
+  if (kind == "input" && values.size() == 2) {
+    return {time, Kind::kInput, values[1], {}, static_cast<int>(values[0])};
+  }
   if (kind == "pause") return {time, Kind::kPause, 0.0, {}};
   if (kind == "resume") return {time, Kind::kResume, 0.0, {}};
   if (kind == "stop") return {time, Kind::kStop, 0.0, {}};
   if (kind == "step") return {time, Kind::kStep, 0.0, {}};
   if (kind == "backward") return {time, Kind::kBackward, 0.0, {}};
   throw MotionError(ErrorCode::kBadArgument, "\"" + kind + "\" is no command.",
-                    {"Use \"override\", \"pause\", \"resume\", \"stop\", \"step\", \"backward\" or "
-                     "\"jog\"."});
+                    {"Use \"override\", \"pause\", \"resume\", \"stop\", \"step\", \"backward\", "
+                     "\"jog\" or \"input\"."});
 }
 
 }  // namespace

@@ -1,7 +1,9 @@
 // Runs as Python sees them: jobs, their reports, and what is logged of them.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
+#include <tuple>
 
 #include "run_handles.hpp"
 #include "viapoint/realtime/log_csv.hpp"
@@ -193,6 +195,14 @@ void bind_job(py::module_& m) {
           py::arg("input"), py::arg("value"), py::arg("action"))
       .def_property_readonly(
           "state", [](const JobHandle& j) { return std::string(to_string(j.job->state())); })
+      .def_property_readonly(
+          "awaited",
+          [](const JobHandle& j) -> std::optional<std::tuple<int, bool, double>> {
+            const std::optional<InputWait> wait = j.job->awaited();
+            if (!wait) return std::nullopt;
+            return std::tuple{static_cast<int>(wait->input), wait->value, wait->timeout};
+          },
+          "Input, value and time-out [s] that the run rests for, if it does.")
       .def_property_readonly("nominal_time",
                              [](const JobHandle& j) { return j.job->nominal_time(); })
       .def_property_readonly("duration", [](const JobHandle& j) { return j.job->duration(); })

@@ -68,7 +68,7 @@ int wait_for_end(Job& job, StopSignals& signals) {
     }
   } catch (const MotionError& error) {
     spdlog::error("{}", error.problem().describe());
-    return kDriveFault;
+    return error.code() == ErrorCode::kDriveFault ? kDriveFault : kStopped;
   }
   return job.state() == RunState::kFinished ? kFinished : kStopped;
 }

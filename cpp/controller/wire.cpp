@@ -47,7 +47,17 @@ TrajectoryPiece piece_of(const v1::Piece& piece, int joints, const std::string& 
              std::to_string(kDigitalOutputs - 1));
     }
     out.output[static_cast<size_t>(out.outputs++)] = {static_cast<std::int16_t>(change.output()),
-                                                      change.value()};
+                                                      change.value(), change.time()};
+  }
+  if (piece.has_wait()) {
+    const v1::InputWait& wait = piece.wait();
+    if (wait.input() >= kDigitalInputs) {
+      refuse(name + ": waits for input " + std::to_string(wait.input()) + "; there are 0 to " +
+             std::to_string(kDigitalInputs - 1));
+    }
+    out.wait.input = static_cast<std::int16_t>(wait.input());
+    out.wait.value = wait.value();
+    if (wait.has_timeout()) out.wait.timeout = wait.timeout();
   }
   return out;
 }

@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Protocol
 
 from . import _core, _session
 from ._arguments import ArrayLike, Vector, integer, number, vector
-from ._job import INPUTS, Execution, Job
+from ._job import Execution, Job
 from ._motion import CYCLE, Motion
 from ._program import Program, motion_of
 from ._recording import Recording, record
 from ._robot import Robot
+from ._steps import INPUTS
 from ._stream import Stream
 from ._virtual import VirtualLoop
 from ._zone import ZoneLike

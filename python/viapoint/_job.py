@@ -11,9 +11,9 @@ from . import _core, _session
 from ._arguments import choice, integer, number
 from ._motion import CYCLE, Motion
 from ._run_log import RunLog
-from .errors import BadArgumentError, DriveFaultError, NotInControlError
+from ._steps import INPUTS
+from .errors import BadArgumentError, DriveFaultError, InputTimeoutError, NotInControlError
 
-INPUTS = 64
 ENDED = ("finished", "stopped", "fault")
 _SLICE = 0.05
 """So long [s] a wait stays in C++ before Python looks after its signals."""
@@ -156,6 +156,9 @@ class Job:
             A timeout that is no number, negative or not finite.
         DriveFaultError
             The drive failed, or the controller does not answer any more.
+        InputTimeoutError
+            An input that the program waits for (`Program.wait_di`) did not come in time: the run
+            has ended there, ``"stopped"``.
         NotInControlError
             Control of an arm in another process was lost: the run waits there, paused.
         """
@@ -174,7 +177,7 @@ class Job:
                 left -= part
                 if left <= 0.0:
                     return False
-        except (DriveFaultError, NotInControlError):
+        except (DriveFaultError, InputTimeoutError, NotInControlError):
             self._seen_to_end = True
             raise
         except BaseException:

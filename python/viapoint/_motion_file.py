@@ -191,8 +191,11 @@ class _Writer:
                 strict=True,
             )
         ]
-        for piece, output, on in pieces.outputs:
-            rows[piece].setdefault("outputs", []).append([output, on])
+        for piece, output, on, seconds in pieces.outputs:
+            told = [output, on, seconds] if seconds else [output, on]
+            rows[piece].setdefault("outputs", []).append(told)
+        for piece, number, on, timeout in pieces.waits:
+            rows[piece]["wait"] = [number, on, timeout]
         return rows
 
     def _certificate(self, found: list[Stretch], corners: list[dict[str, Any]]) -> dict[str, Any]:

@@ -80,6 +80,8 @@ class RemoteExecution:
         ------
         DriveFaultError
             The drive failed.
+        InputTimeoutError
+            An input that the program waits for did not come in time.
         NotInControlError
             Control was lost; the run waits for what the next operator says.
         """
@@ -363,8 +365,14 @@ def _parts_of(pieces: _core.MotionPieces) -> list[list[Message]]:
     """Return the motion's pieces as messages, some in each part."""
     paths = np.asarray(pieces.coefficients)
     outputs: dict[int, list[Message]] = {}
-    for index, output, value in pieces.outputs:
-        outputs.setdefault(index, []).append(message("OutputChange", output=output, value=value))
+    for index, output, value, seconds in pieces.outputs:
+        outputs.setdefault(index, []).append(
+            message("OutputChange", output=output, value=value, time=seconds)
+        )
+    waits = {
+        index: message("InputWait", input=number, value=value, timeout=timeout)
+        for index, number, value, timeout in pieces.waits
+    }
     flat = paths.reshape(len(paths), -1).tolist()
     told = [
         message(
@@ -374,6 +382,7 @@ def _parts_of(pieces: _core.MotionPieces) -> list[list[Message]]:
             timing=timing,
             move=move,
             outputs=outputs.get(index, []),
+            wait=waits.get(index),
         )
         for index, (duration, path, timing, move) in enumerate(
             zip(

@@ -7,16 +7,22 @@ from collections.abc import Sequence
 import numpy as np
 
 from . import _core
-from ._arguments import ArrayLike, Vector, choice, number, vector
+from ._arguments import ArrayLike, Vector, choice, integer, number, vector
 from ._motion import CYCLE, Motion
 from ._program import Program, motion_of
 from ._robot import Robot
 from ._run_log import RunLog
 from ._samples import Samples
+from ._steps import INPUTS
 from .errors import BadArgumentError
 
-COMMANDS = ("override", "pause", "resume", "step", "backward", "jog", "stop")
-Command = tuple[float, str] | tuple[float, str, float] | tuple[float, str, ArrayLike]
+COMMANDS = ("override", "pause", "resume", "step", "backward", "jog", "stop", "input")
+Command = (
+    tuple[float, str]
+    | tuple[float, str, float]
+    | tuple[float, str, ArrayLike]
+    | tuple[float, str, int, bool]
+)
 
 
 def simulate(
@@ -34,15 +40,17 @@ def simulate(
     commands : sequence of (float, str) or (float, str, value)
         Time from the start of the run [s] and ``"override"`` with its share in [0, 1],
         ``"pause"``, ``"resume"``, ``"step"``, ``"backward"`` or ``"stop"``; or, in a pause,
-        ``"jog"`` with the joint velocities (n,) [rad/s or m/s], which count for 250 ms. Those after
-        the end are ignored.
+        ``"jog"`` with the joint velocities (n,) [rad/s or m/s], which count for 250 ms; or
+        ``"input"`` with a digital input, 0 to 63, and True or False: all are off at first. Those
+        after the end are ignored.
     cycle : float
         The controller's cycle [s].
 
     Returns
     -------
     Samples
-        As `Motion.sample` gives them, one a cycle, until the motion has ended or rests for good.
+        As `Motion.sample` gives them, one a cycle, until the motion has ended or rests for good: in
+        a pause, or for an input that no command switches.
 
     Raises
     ------
@@ -128,11 +136,16 @@ def _command(command: Command, name: str, joints: int) -> tuple[float, str, Vect
         ) from None
     seconds = number(time, f"{name}[0]", "s", least=0.0)
     word = choice(kind, f"{name}[1]", COMMANDS)
-    if (word in ("override", "jog")) != (len(rest) == 1):
+    if len(rest) != {"override": 1, "jog": 1, "input": 2}.get(word, 0):
         raise BadArgumentError(
             f'{name} is {command!r}; "override" has a share after it, "jog" the joint velocities, '
-            "the others nothing."
+            '"input" an input and its value, the others nothing.'
         )
+    if word == "input":
+        index = integer(rest[0], f"{name}[2]", 0, INPUTS - 1)
+        if not isinstance(rest[1], bool):
+            raise BadArgumentError(f"{name}[3] is {rest[1]!r}; an input is True or False.")
+        return seconds, word, np.array([index, rest[1]], dtype=float)
     if word == "jog":
         return seconds, word, vector(rest[0], f"{name}[2]", joints)
     share = [number(rest[0], f"{name}[2]", least=0.0, most=1.0)] if rest else []

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Literal, Self, Unpack
 
+from . import _core
 from ._arguments import ArrayLike, choice, integer, number
 from ._curve_steps import CurveSteps
 from ._source import caller
@@ -13,6 +14,7 @@ from ._zone import ZoneLike
 from .errors import BadArgumentError
 from .frames import Frame, Tool, frame_of, tool_of
 
+INPUTS = 64
 OUTPUTS = 64
 
 
@@ -146,8 +148,39 @@ class Steps(CurveSteps):
         self._core.add_wait(number(seconds, "seconds", "s", least=0.0), *caller())
         return self
 
-    def set_do(self, index: int, value: bool) -> Self:
-        """Set a digital output where the path has got to.
+    def wait_di(self, index: int, value: bool = True, *, timeout: float | None = None) -> Self:
+        """Stay at rest until a digital input is so.
+
+        The arm goes on in the cycle after the drive has reported it; an input that is so already
+        holds it for no longer than the stop itself. Meanwhile ``job.state`` is ``"waiting"``. A
+        pause holds the clock of the time-out.
+
+        Parameters
+        ----------
+        index : int
+            Input, 0 to 63.
+        value : bool
+            Until it is on, or until it is off.
+        timeout : float, optional
+            After so long [s] the run ends there: its state is ``"stopped"``, and waiting for it
+            raises `InputTimeoutError`. Default: it waits for ever.
+
+        Raises
+        ------
+        BadArgumentError
+            Another index, a value that is not a bool, or a time-out that is not above 0.
+        """
+        number_of_input = integer(index, "index", 0, INPUTS - 1)
+        if not isinstance(value, bool):
+            raise BadArgumentError(f"value is {value!r}; an input is True or False.")
+        longest = None if timeout is None else number(timeout, "timeout", "s", above=0.0)
+        self._core.add_wait_di(number_of_input, value, longest, *caller())
+        return self
+
+    def set_do(self, index: int, value: bool, *, distance: float = 0.0, time: float = 0.0) -> Self:
+        """Set a digital output where the path has got to, or some way or time from there.
+
+        In a corner that is the place on the path nearest to the point.
 
         Parameters
         ----------
@@ -155,16 +188,27 @@ class Steps(CurveSteps):
             Output, 0 to 63.
         value : bool
             On or off.
+        distance : float
+            So far along the path of the tool [m]: on the move after, negative on the move before.
+            A place, whatever the override. At most as long as that move.
+        time : float
+            So long after the arm passes that place [s], negative: before it does, at the rate it
+            then runs at. On the clock, whatever the override. At most 2 s either way.
 
         Raises
         ------
         BadArgumentError
-            Another index, or a value that is not a bool.
+            Another index, a value that is not a bool, a time out of range. `plan` raises it for a
+            distance longer than the move, and for changes of one output that would come in another
+            order than they are told in.
         """
         output = integer(index, "index", 0, OUTPUTS - 1)
         if not isinstance(value, bool):
             raise BadArgumentError(f"value is {value!r}; an output is True or False.")
-        self._core.add_set_do(output, value, *caller())
+        way = number(distance, "distance", "m")
+        most = _core.MOST_OUTPUT_TIME
+        seconds = number(time, "time", "s", least=-most, most=most)
+        self._core.add_set_do(output, value, way, seconds, *caller())
         return self
 
     def timed(

@@ -352,6 +352,7 @@ for _name in (
     "set_frame",
     "set_tool",
     "wait",
+    "wait_di",
     "set_do",
     "timed",
 ):

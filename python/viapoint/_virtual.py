@@ -33,6 +33,11 @@ class VirtualExecution:
         self._job = job
         self._loop = loop
 
+    @property
+    def awaited(self) -> tuple[int, bool, float] | None:
+        """Input, value and time-out [s] that the run rests for."""
+        return self._job.awaited
+
     def _look(self) -> None:
         if self._job.state not in ENDED:
             self._loop.pass_cycles(math.ceil(self._job.duration / self._loop.cycle / _LOOKS))
@@ -165,17 +170,18 @@ class VirtualLoop:
 
     def pass_cycles(self, count: int) -> int:
         """Let time pass until a run ends or nothing moves; return how many cycles have passed."""
-        if self.feed is None and self.look is None:
-            return self.core.pass_cycles(count)
         passed = 0
         while passed < count:
-            part = 1 if self.look is not None else min(_SLICE, count - passed)
+            part = count - passed if self.feed is None else min(_SLICE, count - passed)
+            if self.look is not None:
+                part = 1
             passed += (came := self.core.pass_cycles(part))
             if self.look is not None:
                 self.look()
             if self.feed is not None:
                 self.feed()
-            if came < part or (part == 1 and self._rests()):
+            rests = came < part or (self.look is not None and self._rests())
+            if rests and not self._answer():
                 break
         return passed
 
@@ -186,6 +192,15 @@ class VirtualLoop:
         return not self.core.busy or (
             self._run is not None and self._run._job.state in ("paused", "waiting")
         )
+
+    def _answer(self) -> bool:
+        """Switch the input that the run waits for: nobody else would. False where it does not."""
+        awaited = None if self._run is None else self._run.awaited
+        if awaited is None:
+            return False
+        bit = 1 << awaited[0]
+        self.core.set_inputs(bit, bit if awaited[1] else 0)
+        return True
 
     def executed(self, job: _core.Job) -> VirtualExecution:
         """Return the run of `job`, which is the one under way."""

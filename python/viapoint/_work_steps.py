@@ -161,7 +161,7 @@ class WorkSteps(Steps):
         return self
 
     def _grip(self, gripper: Gripper, closed: bool) -> None:
-        self._core.add_set_do(gripper.output, closed == gripper.closed, *caller())
+        self._core.add_set_do(gripper.output, closed == gripper.closed, 0.0, 0.0, *caller())
         if gripper.dwell > 0.0:
             self._core.add_wait(gripper.dwell, *caller())
 

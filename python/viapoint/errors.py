@@ -34,6 +34,7 @@ __all__ = [
     "EmptyProgramError",
     "FileError",
     "HalfTurnError",
+    "InputTimeoutError",
     "InternalError",
     "JerkLimitError",
     "JointLimitError",
@@ -262,6 +263,12 @@ class StoppedError(RunError):
     """The run was stopped before its end."""
 
     code = "stopped"
+
+
+class InputTimeoutError(RunError):
+    """An input that the program waits for did not come in time: the run has ended on its path."""
+
+    code = "input_timeout"
 
 
 class BusyError(RunError):

@@ -41,6 +41,7 @@ constexpr std::array kNames{
     Name{ErrorCode::kDiscontinuous, "discontinuous"},
     Name{ErrorCode::kDriveFault, "drive_fault"},
     Name{ErrorCode::kStopped, "stopped"},
+    Name{ErrorCode::kInputTimeout, "input_timeout"},
     Name{ErrorCode::kBusy, "busy"},
     Name{ErrorCode::kFile, "file"},
     Name{ErrorCode::kInternal, "internal"},

@@ -95,13 +95,51 @@ class ItineraryWalk::Walk {
     itinerary_.items.emplace_back(Dwell{step_, wait.seconds});
   }
 
+  void operator()(const WaitInput& wait) {
+    if (wait.index < 0 || wait.index >= kDigitalInputs) {
+      add(ErrorCode::kBadArgument, "digital input " + std::to_string(wait.index) +
+                                       "; inputs are 0 to " + std::to_string(kDigitalInputs - 1));
+      return;
+    }
+    InputWait awaited{static_cast<std::int16_t>(wait.index), wait.value};
+    if (wait.timeout) {
+      awaited.timeout = *wait.timeout;
+      if (!(awaited.timeout > 0.0) || !std::isfinite(awaited.timeout)) {
+        add(ErrorCode::kBadArgument,
+            "a time-out of " + number_text(awaited.timeout) + " s; it must be above 0 and finite",
+            {"leave the time-out out to wait for ever"});
+        return;
+      }
+    }
+    outputs_here_ = 0;
+    merger_.flush();
+    itinerary_.items.emplace_back(Dwell{step_, kRestAtInput, awaited});
+  }
+
   void operator()(const SetOutput& output) {
     if (output.index < 0 || output.index >= kDigitalOutputs) {
       add(ErrorCode::kBadArgument, "digital output " + std::to_string(output.index) +
                                        "; outputs are 0 to " + std::to_string(kDigitalOutputs - 1));
       return;
     }
-    if (++outputs_here_ > kMaxOutputsAPiece) {
+    if (!(std::abs(output.time) <= kMostOutputTime)) {
+      add(ErrorCode::kBadArgument,
+          "an output " + number_text(output.time) + " s from its point; allowed are " +
+              number_text(kMostOutputTime) + " s before or after it",
+          {"put the output at a nearer point, or a wait before it"});
+      return;
+    }
+    if (!std::isfinite(output.distance)) {
+      add(ErrorCode::kBadArgument, "the distance of an output from its point is not finite");
+      return;
+    }
+    if (output.distance != 0.0 && !robot_->has_kinematics()) {
+      add(ErrorCode::kBadArgument,
+          robot_->name() + " has no kinematics, so a distance at the tool means nothing to it",
+          {"tell the output a time instead"});
+      return;
+    }
+    if (output.distance == 0.0 && ++outputs_here_ > kMaxOutputsAPiece) {
       add(ErrorCode::kBadArgument,
           "more than " + std::to_string(kMaxOutputsAPiece) + " outputs change at one point",
           {"put a short wait(0.01) between them"});
@@ -109,7 +147,12 @@ class ItineraryWalk::Walk {
     }
     merger_.flush();
     itinerary_.items.emplace_back(
-        Output{step_, {static_cast<std::int16_t>(output.index), output.value}});
+        Output{step_,
+               {static_cast<std::int16_t>(output.index), output.value, output.time},
+               output.distance,
+               at_,
+               leg_,
+               robot_});
   }
 
   void operator()(const SetFrame& step) { frame_ = step.pose_base_frame; }
@@ -202,6 +245,7 @@ class ItineraryWalk::Walk {
       builder_->apply(leg, options, step_);
       leg.robot = robot_;
       at_ = leg.goal;
+      leg_ = step_;
       outputs_here_ = 0;
       if (std::optional<Problem> problem = speed_not_kept(*robot_, leg)) add(std::move(*problem));
       merger_.add(std::move(leg));
@@ -325,6 +369,7 @@ class ItineraryWalk::Walk {
   JointVector at_;     ///< where the arm is, or was to be
   bool lost_ = false;  ///< at_ is not where the step before was to end
   int step_ = 0;
+  int leg_ = -1;          ///< step of the last move
   int outputs_here_ = 0;  ///< changes since the last motion or wait
 };
 

@@ -16,6 +16,7 @@ namespace viapoint::planning {
 struct Dwell {
   int step = 0;
   double seconds = 0.0;
+  InputWait wait{};  ///< before it
 };
 /// A shorter wait is a stop and nothing else [s].
 inline constexpr double kShortestWait = 1e-9;
@@ -23,9 +24,16 @@ inline constexpr double kShortestWait = 1e-9;
 /// there [s].
 inline constexpr double kRestInstead = 2e-3;
 
+/// How long the arm rests after an input that it waits for has come [s].
+inline constexpr double kRestAtInput = 2e-3;
+
 struct Output {
   int step = 0;
   OutputChange change;
+  double distance = 0.0;  ///< along the path from the point [m]
+  JointVector point;      ///< where the move before it ends
+  int leg = -1;           ///< step of that move
+  RobotPtr robot;         ///< with the tool whose way counts
 };
 using Item = std::variant<Leg, Dwell, Output>;
 

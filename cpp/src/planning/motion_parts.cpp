@@ -17,18 +17,10 @@ TrajectoryPiece rest_at(const JointVector& q, double seconds, int step) {
   return piece;
 }
 
-std::vector<size_t> attach_outputs(std::span<TrajectoryPiece> pieces,
-                                   std::span<const Output> outputs) {
-  std::vector<size_t> places;
-  for (size_t k = 0; k < pieces.size() && places.size() < outputs.size(); ++k) {
-    TrajectoryPiece& piece = pieces[k];
-    while (places.size() < outputs.size() && outputs[places.size()].step < piece.move &&
-           piece.outputs < kMaxOutputsAPiece) {
-      piece.output[static_cast<size_t>(piece.outputs++)] = outputs[places.size()].change;
-      places.push_back(k);
-    }
-  }
-  return places;
+TrajectoryPiece rest_at(const JointVector& q, const Dwell& dwell) {
+  TrajectoryPiece piece = rest_at(q, dwell.seconds, dwell.step);
+  piece.wait = dwell.wait;
+  return piece;
 }
 
 Problem warning_of(const CornerOutcome& corner) {

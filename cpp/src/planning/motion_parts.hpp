@@ -16,12 +16,7 @@ namespace viapoint::planning {
 inline constexpr double kLastOutputs = 0.002;
 
 [[nodiscard]] TrajectoryPiece rest_at(const JointVector& q, double seconds, int step);
-
-/// Puts each change of output on the first piece of a later step: in the middle of the corner
-/// where the point is passed, at the end of the stop where the arm rests there.
-/// @returns the piece of each, as far as there are such pieces
-std::vector<size_t> attach_outputs(std::span<TrajectoryPiece> pieces,
-                                   std::span<const Output> outputs);
+[[nodiscard]] TrajectoryPiece rest_at(const JointVector& q, const Dwell& dwell);
 
 /// The warning that a corner is not as it was asked for. @pre the corner says why
 [[nodiscard]] Problem warning_of(const CornerOutcome& corner);

@@ -8,6 +8,7 @@
 
 #include "planning/itinerary.hpp"
 #include "planning/motion_parts.hpp"
+#include "planning/output_places.hpp"
 #include "planning/section.hpp"
 #include "planning/tool_changes.hpp"
 #include "planning/tool_proof.hpp"
@@ -23,16 +24,26 @@ using planning::Leg;
 using planning::Output;
 using planning::Section;
 
-/// The outputs of all pieces, and a last piece for those that nothing follows.
+/// The outputs of all pieces, and a rest at the end for those that nothing follows and for those
+/// that come after it.
 void attach_all(std::vector<TrajectoryPiece>& pieces, const std::vector<Output>& outputs,
                 const JointVector& end) {
-  const size_t attached = planning::attach_outputs(pieces, outputs).size();
-  if (attached == outputs.size()) return;
-  const int after = outputs.back().step + 1;
-  TrajectoryPiece last = planning::rest_at(end, planning::kLastOutputs, after);
-  (void)planning::attach_outputs({&last, 1}, std::span(outputs).subspan(attached));
-  last.move = outputs.back().step;
-  pieces.push_back(last);
+  if (outputs.empty()) return;
+  const int last = outputs.back().step;
+  const bool is_last = pieces.empty() || pieces.back().move <= last;
+  if (is_last) pieces.push_back(planning::rest_at(end, planning::kLastOutputs, last + 1));
+  std::vector<ToolLimits> none;
+  const auto attached = planning::attach_outputs(pieces, none, outputs, {});
+  if (is_last) pieces.back().move = last;
+  std::vector<double> starts = {0.0};
+  for (const TrajectoryPiece& piece : pieces) starts.push_back(starts.back() + piece.duration);
+  double late = 0.0;  // after the end
+  for (size_t i = 0; i < outputs.size(); ++i) {
+    late = std::max(late, starts[*attached[i]] + outputs[i].change.time - starts.back());
+  }
+  if (late > 0.0) {
+    pieces.push_back(planning::rest_at(end, late, std::max(last, pieces.back().move)));
+  }
 }
 
 class Composer {
@@ -50,13 +61,19 @@ class Composer {
       } else if (const auto* dwell = std::get_if<Dwell>(&item)) {
         flush_legs();
         if (dwell->seconds >= planning::kShortestWait)
-          pieces_.push_back(planning::rest_at(at, dwell->seconds, dwell->step));
+          pieces_.push_back(planning::rest_at(at, *dwell));
       } else {
         outputs_.push_back(std::get<Output>(item));
       }
     }
     flush_legs();
-    attach_all(pieces_, outputs_, at);
+    try {
+      attach_all(pieces_, outputs_, at);
+    } catch (const MotionError& error) {
+      Problem problem = error.problem();
+      planning::locate(problem, program_, problem.move.value_or(-1));
+      throw MotionError(std::move(problem));
+    }
     return finish();
   }
 

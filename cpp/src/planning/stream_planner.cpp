@@ -8,6 +8,7 @@
 
 #include "planning/itinerary.hpp"
 #include "planning/motion_parts.hpp"
+#include "planning/output_places.hpp"
 #include "planning/path_timer.hpp"
 #include "planning/section.hpp"
 #include "planning/section_builder.hpp"
@@ -36,6 +37,13 @@ struct Known {
   int step = 0;
   SourceLine source;
   double position_deviation = 0.0, angle_deviation = 0.0;
+};
+
+/// An output that has not been passed.
+struct Pending {
+  Output output;
+  std::optional<size_t> piece;  ///< of the chunk handed out last, where it changes
+  bool in_tail = false;         ///< of the chunk before it, after that one was to be left
 };
 
 /// A part of a section, or a rest, of one arm.
@@ -91,17 +99,18 @@ class StreamPlanner::Line {
 
   MotionChunk after_rest() {
     // What the end of the chunk before has switched is switched.
-    outputs_.erase(outputs_.begin(), outputs_.begin() + static_cast<std::ptrdiff_t>(tail_outputs_));
-    output_times_.clear();
+    std::erase_if(outputs_, [](const Pending& pending) { return pending.in_tail; });
+    for (Pending& pending : outputs_) pending.piece.reset();
     last_ = std::move(before_);
     duration_ = duration_before_;
+    due_after_ = due_after_before_;
     planning::PathTimer& timer = timer_ ? *timer_ : *over_;
     timer.begin_after_missing();
     ++stops_;
     MotionChunk chunk;
     chunk.begin = duration_;
     followed_ = true;  // of the one that was missed nothing is run
-    finish(chunk, section_arm_, timer.timing().pieces, timer.tool());
+    finish(chunk, section_arm_, timer.timing().pieces, !timer_, timer.tool());
     chunk.last = handed_out_last_ = is_last();
     return chunk;
   }
@@ -140,10 +149,10 @@ class StreamPlanner::Line {
     } else if (const auto* dwell = std::get_if<Dwell>(&item)) {
       rest_here();
       if (dwell->seconds >= planning::kShortestWait) {
-        ready_.push_back({arm_, planning::rest_at(at_, dwell->seconds, dwell->step)});
+        ready_.push_back({arm_, planning::rest_at(at_, *dwell)});
       }
     } else {
-      outputs_.push_back(std::get<Output>(item));
+      outputs_.push_back({std::get<Output>(item), std::nullopt, false});
     }
   }
 
@@ -211,7 +220,7 @@ class StreamPlanner::Line {
     chunk.begin = section_begun_ ? leave : duration_;
     section_begun_ = true;
     wanted_legs_ = ends ? kFirstLegs : std::min(kMostLegs, 2 * wanted_legs_);
-    finish(chunk, section_arm_, timer_->timing().pieces, timer_->tool());
+    finish(chunk, section_arm_, timer_->timing().pieces, ends, timer_->tool());
     if (ends) {
       follow_process(duration_);
       over_.emplace(std::move(*timer_));
@@ -228,7 +237,7 @@ class StreamPlanner::Line {
     chunk.begin = duration_;
     const Stage stage = std::move(ready_.front());
     ready_.pop_front();
-    finish(chunk, stage.arm, {std::get<TrajectoryPiece>(stage.what)});
+    finish(chunk, stage.arm, {std::get<TrajectoryPiece>(stage.what)}, true);
     warn_of(chunk);
     return chunk;
   }
@@ -238,7 +247,7 @@ class StreamPlanner::Line {
   std::optional<MotionChunk> at_last() {
     if (!ended_ || handed_out_last_) return std::nullopt;
     if (steps_ > 0) drop_passed(duration_);
-    if (steps_ == 0 || (handed_out_ && outputs_.empty())) {
+    if (steps_ == 0 || (handed_out_ && outputs_.empty() && !(due_after_ > 0.0))) {
       handed_out_last_ = true;  // before the end was known
       return std::nullopt;
     }
@@ -248,21 +257,60 @@ class StreamPlanner::Line {
     for (size_t k = 0; k < rests; ++k) {
       pieces.push_back(planning::rest_at(at_, planning::kLastOutputs, steps_));
     }
+    pieces.back().duration += std::max(due_after_, latest_time());
     MotionChunk chunk;
     chunk.begin = duration_;
-    finish(chunk, arm_, std::move(pieces));
+    finish(chunk, arm_, std::move(pieces), true);
     warn_of(chunk);
     return chunk;
   }
 
   /// Outputs that have changed before the chunk handed out last is left at `leave`.
   void drop_passed(double leave) {
-    size_t passed = 0;
+    std::vector<double> left;  // when each piece of it begins, before that
+    for (double time = 0.0; const TrajectoryPiece& piece : last_) {
+      left.push_back(leave - time);
+      time += piece.duration;
+    }
     // At the very moment, but for rounding, the next chunk changes it, too.
-    while (passed < output_times_.size() && output_times_[passed] < leave - kMoment) ++passed;
-    outputs_.erase(outputs_.begin(), outputs_.begin() + static_cast<std::ptrdiff_t>(passed));
-    tail_outputs_ = output_times_.size() - passed;
-    output_times_.clear();
+    std::erase_if(outputs_, [&](const Pending& pending) {
+      return pending.piece && left[*pending.piece] > kMoment;
+    });
+    for (Pending& pending : outputs_) {
+      pending.in_tail = pending.piece.has_value();
+      pending.piece.reset();
+      if (!pending.in_tail) planning::move_point(pending.output, last_, leave);
+    }
+  }
+
+  /// Of the outputs that nothing follows, how long the last is to come after the end [s].
+  [[nodiscard]] double latest_time() const {
+    double latest = 0.0;
+    for (const Pending& pending : outputs_) {
+      latest = std::max(latest, pending.output.change.time);
+    }
+    return latest;
+  }
+
+  void attach(std::vector<TrajectoryPiece>& pieces, std::vector<ToolLimits>& tool, bool move_ends) {
+    std::vector<Output> outputs;
+    for (const Pending& pending : outputs_) outputs.push_back(pending.output);
+    const planning::Surroundings around{!handed_out_, ended_ && ready_.empty() && !timer_,
+                                        move_ends};
+    const auto attached = planning::attach_outputs(pieces, tool, outputs, around);
+    for (size_t i = 0; i < attached.size(); ++i) outputs_[i].piece = attached[i];
+  }
+
+  /// Notes how long after the end the last output of all comes.
+  void note_due(const MotionChunk& chunk) {
+    due_after_before_ = due_after_;
+    due_after_ -= chunk.motion.duration() - (duration_ - chunk.begin);
+    for (const Pending& pending : outputs_) {
+      if (!pending.piece) continue;
+      const double at = chunk.motion.start_of(*pending.piece) + pending.output.change.time;
+      due_after_ = std::max(due_after_, at - chunk.motion.duration());
+    }
+    due_after_ = std::max(due_after_, 0.0);
   }
 
   /// Looks for process speeds that are not held in the chunk handed out last, run until `end`.
@@ -273,8 +321,9 @@ class StreamPlanner::Line {
     time_ = planning::add_process(process_, *last_arm_, run, last_tool_, time_);
   }
 
+  /// @param move_ends a move ends with the last piece
   void finish(MotionChunk& chunk, const RobotPtr& of, std::vector<TrajectoryPiece> pieces,
-              std::vector<ToolLimits> tool = {}) {
+              bool move_ends, std::vector<ToolLimits> tool = {}) {
     const RobotModel& arm = *of;
     drop_passed(chunk.begin);
     follow_process(chunk.begin);
@@ -282,11 +331,11 @@ class StreamPlanner::Line {
     if (!last_.empty()) {
       while (known_.size() > 1 && known_.front().step < last_.front().move) known_.pop_front();
     }
-    const std::vector<size_t> places = planning::attach_outputs(pieces, outputs_);
+    attach(pieces, tool, move_ends);
     const std::optional<JointState> from = state_at(chunk.begin);
     const double manipulability = planning::least_manipulability(arm, pieces);
     chunk.motion = Trajectory(std::move(pieces), arm.limits(), from);
-    for (const size_t place : places) output_times_.push_back(chunk.motion.start_of(place));
+    note_due(chunk);
     duration_before_ = std::exchange(duration_, chunk.motion.duration());
     before_ = std::exchange(last_, chunk.motion.pieces());
 
@@ -345,7 +394,9 @@ class StreamPlanner::Line {
   }
 
   [[nodiscard]] bool is_last() const {
-    return ended_ && ready_.empty() && !timer_ && output_times_.size() == outputs_.size();
+    return ended_ && ready_.empty() && !timer_ && !(due_after_ > 0.0) &&
+           std::ranges::all_of(outputs_,
+                               [](const Pending& pending) { return pending.piece.has_value(); });
   }
 
   void locate(Problem& problem) const {
@@ -365,10 +416,10 @@ class StreamPlanner::Line {
   int last_leg_ = -1;  ///< since the arm rested
   Zone zone_;          ///< of it
 
-  std::deque<Stage> ready_;      ///< decided, not handed out
-  size_t used_ = 0;              ///< pieces of path of the first that have been handed out
-  std::vector<Output> outputs_;  ///< not passed yet
-  std::deque<Known> known_;      ///< steps not passed yet
+  std::deque<Stage> ready_;       ///< decided, not handed out
+  size_t used_ = 0;               ///< pieces of path of the first that have been handed out
+  std::vector<Pending> outputs_;  ///< in the order told
+  std::deque<Known> known_;       ///< steps not passed yet
   std::vector<Problem> warnings_;
   std::vector<CornerOutcome> tool_changes_;
 
@@ -381,7 +432,7 @@ class StreamPlanner::Line {
 
   bool handed_out_ = false, handed_out_last_ = false;
   double duration_ = 0.0;              ///< of the chunk handed out last
-  std::vector<double> output_times_;   ///< in it, of the first of outputs_
+  double due_after_ = 0.0;             ///< its end the last output comes [s]
   std::vector<TrajectoryPiece> last_;  ///< its pieces
   std::vector<ToolLimits> last_tool_;  ///< what they allow the tool
   RobotPtr last_arm_;
@@ -390,7 +441,7 @@ class StreamPlanner::Line {
   planning::ProcessProof process_;  ///< of all chunks up to there
   // Of the chunk before, for when that one is run to its end.
   double duration_before_ = 0.0;
-  size_t tail_outputs_ = 0;  ///< that it changes after it was to be left
+  double due_after_before_ = 0.0;
   std::vector<TrajectoryPiece> before_;
 };
 

@@ -35,6 +35,7 @@ struct Mover {
     for (TimedPoint& point : step.points) move(point.target);
   }
   void operator()(const Wait&) const {}
+  void operator()(const WaitInput&) const {}
   void operator()(const SetOutput&) const {}
   void operator()(const SetFrame&) const {}
   void operator()(const SetTool&) const {}

@@ -46,8 +46,14 @@ struct StepWriter {
   void operator()(const TurnMove& move) const { write(json, move); }
   void operator()(const SplineMove& move) const { write(json, move); }
   void operator()(const Wait& wait) const { json["wait"] = wait.seconds; }
+  void operator()(const WaitInput& wait) const {
+    json["wait_di"] = {{"index", wait.index}, {"value", wait.value}};
+    if (wait.timeout) json["wait_di"]["timeout"] = *wait.timeout;
+  }
   void operator()(const SetOutput& output) const {
     json["set_do"] = {{"index", output.index}, {"value", output.value}};
+    if (output.distance != 0.0) json["set_do"]["distance"] = output.distance;
+    if (output.time != 0.0) json["set_do"]["time"] = output.time;
   }
   void operator()(const SetFrame& step) const {
     json["set_frame"] = named(&step.pose_base_frame, step.name);
@@ -115,6 +121,10 @@ std::optional<double> wish(const Node& node, const char* key) {
   return value;
 }
 
+double number_or_zero(const Node& node, const char* key) {
+  return node.has(key) ? node.at(key).number() : 0.0;
+}
+
 Zone zone_of(const Node& node) {
   node.require_object();
   for (const auto& word : kZones) {
@@ -142,13 +152,14 @@ std::string name_in(const Node& node) { return node.has("name") ? node.at("name"
 /// A step is one thing: what says two would have one of them ignored.
 void require_one_kind(const Node& node) {
   int kinds = 0;
-  for (const char* kind : {"ptp", "lin", "circ", "turn", "spline", "wait", "set_do", "timed",
-                           "set_frame", "set_tool"}) {
+  for (const char* kind : {"ptp", "lin", "circ", "turn", "spline", "wait", "wait_di", "set_do",
+                           "timed", "set_frame", "set_tool"}) {
     kinds += node.has(kind) ? 1 : 0;
   }
   if (kinds != 1) {
     node.refuse(
-        "exactly one of ptp, lin, circ, turn, spline, wait, set_do, timed, set_frame, set_tool");
+        "exactly one of ptp, lin, circ, turn, spline, wait, wait_di, set_do, timed, set_frame, "
+        "set_tool");
   }
   const bool cartesian =
       node.has("lin") || node.has("circ") || node.has("turn") || node.has("spline");
@@ -165,26 +176,11 @@ void require_one_kind(const Node& node) {
 }
 
 Step step_of(const Node& node) {
-  node.only({"ptp",
-             "lin",
-             "circ",
-             "via",
-             "turn",
-             "spline",
-             "orientation",
-             "wait",
-             "set_do",
-             "timed",
-             "set_frame",
-             "set_tool",
-             "zone",
-             "speed",
-             "acceleration",
-             "angular_speed",
-             "angular_acceleration",
-             "process_speed",
-             "scale",
-             "source"});
+  node.only(
+      {"ptp",           "lin",   "circ",    "via",          "turn",          "spline",
+       "orientation",   "wait",  "wait_di", "set_do",       "timed",         "set_frame",
+       "set_tool",      "zone",  "speed",   "acceleration", "angular_speed", "angular_acceleration",
+       "process_speed", "scale", "source"});
   require_one_kind(node);
   Step step;
   if (node.has("ptp")) {
@@ -199,10 +195,16 @@ Step step_of(const Node& node) {
     step.what = spline_of(node);
   } else if (node.has("wait")) {
     step.what = Wait{node.at("wait").number()};
+  } else if (node.has("wait_di")) {
+    const Node wait = node.at("wait_di");
+    wait.only({"index", "value", "timeout"});
+    step.what =
+        WaitInput{wait.at("index").integer(), wait.at("value").boolean(), wish(wait, "timeout")};
   } else if (node.has("set_do")) {
     const Node output = node.at("set_do");
-    output.only({"index", "value"});
-    step.what = SetOutput{output.at("index").integer(), output.at("value").boolean()};
+    output.only({"index", "value", "distance", "time"});
+    step.what = SetOutput{output.at("index").integer(), output.at("value").boolean(),
+                          number_or_zero(output, "distance"), number_or_zero(output, "time")};
   } else if (node.has("set_frame")) {
     const Node frame = node.at("set_frame");
     step.what = SetFrame{pose_in(frame).value_or(Pose::Identity()), name_in(frame)};

@@ -61,6 +61,8 @@ void CycleRunner::do_cycle() noexcept VIAPOINT_NONBLOCKING {
   hold_lease();
   interpolator_.set_override(channels_.override_share.load(std::memory_order_relaxed));
 
+  interpolator_.set_inputs(measurement_.inputs);
+
   const std::int64_t begin = clock_.now();
   if (!off_path_) {
     interpolator_.tick(setpoint_);
@@ -228,11 +230,14 @@ void CycleRunner::record(std::int64_t compute) noexcept VIAPOINT_NONBLOCKING {
   motion.nominal_time.store(record_.nominal_time, std::memory_order_relaxed);
   if (motion.open) {
     motion.settled_time.store(interpolator_.settled_time(), std::memory_order_relaxed);
-    if (record_.state == RunState::kWaiting) {
+    if (record_.state == RunState::kWaiting && !interpolator_.awaits_input()) {
       motion.waited_cycles.fetch_add(1, std::memory_order_relaxed);
     }
   }
   motion.move.store(record_.move, std::memory_order_relaxed);
+  AwaitedInput awaited;
+  if (interpolator_.awaits_input()) awaited = AwaitedInput::of(interpolator_.awaited());
+  motion.awaited.store(awaited, std::memory_order_relaxed);
 }
 
 void CycleRunner::finish() noexcept VIAPOINT_NONBLOCKING {
@@ -243,6 +248,9 @@ void CycleRunner::finish() noexcept VIAPOINT_NONBLOCKING {
     return;
   }
   motion_->may_be_jogged.store(interpolator_.may_be_jogged(), std::memory_order_relaxed);
+  if (interpolator_.input_missed()) {
+    motion_->missed.store(AwaitedInput::of(interpolator_.awaited()), std::memory_order_relaxed);
+  }
   motion_->state.store(state, std::memory_order_release);
   if (!rests) return;
   // Before the motion goes back: who sees the stop's end sees that the drive is to be released.

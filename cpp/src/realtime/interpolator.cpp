@@ -25,6 +25,8 @@ Interpolator::Interpolator(const JointLimits& limits, std::chrono::nanoseconds c
       jog_cycles_(static_cast<int>(kJogLease / cycle) + 1),
       lookahead_(limits, governor_.cell()),
       return_(limits, cycle_),
+      timed_outputs_(cycle_),
+      gate_(cycle_),
       position_(position) {
   shown_ = {0.0, 0.0, 0.0};
 }
@@ -50,7 +52,11 @@ void Interpolator::begin(const Trajectory& motion, bool open) noexcept VIAPOINT_
   outputs_before_ = outputs_;
   farthest_piece_ = 0;
   farthest_ = 0.0;
+  timed_outputs_.begin(motion.timed_changes(), outputs_);
+  gate_.begin(motion);
+  input_missed_ = false;
   enter_piece(0);
+  stop_at_gate();
 }
 
 LinkFate Interpolator::lengthen(const MotionLink& link) noexcept VIAPOINT_NONBLOCKING {
@@ -67,10 +73,13 @@ LinkFate Interpolator::lengthen(const MotionLink& link) noexcept VIAPOINT_NONBLO
   if (farthest_ > link.same_until) return LinkFate::kTooLate;
   // At its end the arm rests, whatever rate it came with; what follows begins anew.
   const bool rests = waits_ || now_.tau >= motion_->duration();
+  timed_outputs_.lengthen(link.motion->timed_changes(), link.dropped, link.shift, farthest_,
+                          outputs_with(outputs_));
   if (link.dropped > 0) {
     const OutputEffect& passed = motion_->outputs_after(link.dropped - 1);
     outputs_before_ = (outputs_before_ & ~passed.changed) | passed.on;
   }
+  gate_.lengthen(*link.motion, link.dropped);
   motion_ = link.motion;
   may_go_back_ = link.begins_at_rest;
   left_out_ += link.shift;
@@ -86,6 +95,7 @@ LinkFate Interpolator::lengthen(const MotionLink& link) noexcept VIAPOINT_NONBLO
     fresh_ = now_.tau;
   }
   enter_piece(motion_->piece_at(now_.tau));
+  stop_at_gate();
   return LinkFate::kTaken;
 }
 
@@ -157,9 +167,14 @@ RunState Interpolator::tick(Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKING {
     hold(setpoint);
     return run_state_;
   }
-  if (off_path_) return tick_return(setpoint);
+  if (off_path_) {
+    switch_outputs(false);
+    return tick_return(setpoint);
+  }
   if (waits_ && !(wants_motion() && wish_ == Wish::kBackward)) return tick_waiting(setpoint);
   waits_ = false;
+  if (gate_.waits() && !(wants_motion() && wish_ == Wish::kBackward)) return tick_at_gate(setpoint);
+  gate_.leave();
   return tick_motion(setpoint);
 }
 
@@ -178,6 +193,7 @@ RunState Interpolator::tick_jog(Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKIN
   } else {
     off_path_ = true;
     if (wish_ != Wish::kPause) stop_jog();
+    switch_outputs(false);
   }
   jog_.tick(setpoint);
   position_ = setpoint.q;
@@ -229,8 +245,9 @@ RunState Interpolator::tick_motion(Setpoint& setpoint) noexcept VIAPOINT_NONBLOC
 
   looked_at_ = lookahead_.advance(now_.tau, kCellsACycle, kPiecesACycle);
   const double curvature = governor_.decide(now_, target(), lookahead_);
-  evaluate(curvature, setpoint);
   run_state_ = classify();
+  switch_outputs(direction_ == Direction::kForward);
+  evaluate(curvature, setpoint);
   if (run_state_ == RunState::kFinished || run_state_ == RunState::kStopped) {
     motion_ = nullptr;
   } else if (ends_here()) {
@@ -245,10 +262,53 @@ RunState Interpolator::tick_motion(Setpoint& setpoint) noexcept VIAPOINT_NONBLOC
 /// At rest where the motion ends for now.
 RunState Interpolator::tick_waiting(Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKING {
   shown_ = {motion_->duration(), 0.0, 0.0};
-  hold(setpoint);
   run_state_ = classify_wait();
+  switch_outputs(false);
+  hold(setpoint);
   if (run_state_ == RunState::kStopped || run_state_ == RunState::kFinished) motion_ = nullptr;
   return run_state_;
+}
+
+/// At rest where an input is waited for. When that is so, or was missed, the cycle is another's.
+RunState Interpolator::tick_at_gate(Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKING {
+  if (wants_motion()) {
+    const InputGate::Answer answer = gate_.ask(inputs_);
+    if (answer == InputGate::Answer::kGoOn) {
+      fresh_ = now_.tau;
+      return tick_motion(setpoint);
+    }
+    input_missed_ = answer == InputGate::Answer::kTimedOut;
+    run_state_ = input_missed_ ? RunState::kStopped : RunState::kWaiting;
+  } else {
+    run_state_ = is_stop() ? RunState::kStopped : RunState::kPaused;
+  }
+  switch_outputs(false);
+  evaluate(0.0, setpoint);
+  if (run_state_ == RunState::kStopped) motion_ = nullptr;
+  return run_state_;
+}
+
+/// The arm gets no farther than where it is to wait; the path rests there.
+void Interpolator::stop_at_gate() noexcept VIAPOINT_NONBLOCKING {
+  if (direction_ == Direction::kBackward || gate_.waits()) return;
+  const double place = gate_.place();
+  if (now_.tau < place - kEndSlack) return;
+  rest_at(place);
+  gate_.arrive();
+}
+
+void Interpolator::switch_outputs(bool is_ahead) noexcept VIAPOINT_NONBLOCKING {
+  const TimedOutputs::Progress progress{farthest_, gate_.place(), is_ahead, now_};
+  std::uint64_t timed = timed_outputs_.tick(progress, governor_);
+  if (run_state_ == RunState::kFinished) timed = timed_outputs_.end();
+  outputs_ = outputs_with(timed);
+}
+
+/// Outputs that are told times as they are in `timed`, the others as the motion has changed them.
+std::uint64_t Interpolator::outputs_with(std::uint64_t timed) const noexcept VIAPOINT_NONBLOCKING {
+  const OutputEffect& effect = motion_->outputs_after(farthest_piece_);
+  const std::uint64_t others = (outputs_before_ & ~effect.changed) | effect.on;
+  return (others & ~timed_outputs_.mask()) | (timed & timed_outputs_.mask());
 }
 
 /// The way back is a motion of its own, that begins at rest where this one has come to rest.
@@ -330,6 +390,7 @@ void Interpolator::move_on() noexcept VIAPOINT_NONBLOCKING {
     now_.tau = motion_->duration();
     if (direction_ == Direction::kBackward) rest_at(now_.tau);
   }
+  stop_at_gate();
   const std::size_t piece = motion_->piece_at(nominal(now_.tau));
   if (step_move_ != kNoMove && motion_->pieces()[piece].move != step_move_) {
     end_step(piece);
@@ -366,8 +427,6 @@ void Interpolator::enter_piece(std::size_t piece) noexcept VIAPOINT_NONBLOCKING 
   piece_ = piece;
   farthest_piece_ = std::max(farthest_piece_, piece);
   farthest_ = std::max(farthest_, nominal(now_.tau));
-  const OutputEffect& effect = motion_->outputs_after(farthest_piece_);
-  outputs_ = (outputs_before_ & ~effect.changed) | effect.on;
 }
 
 }  // namespace viapoint

@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <string>
 #include <utility>
 
@@ -14,6 +15,19 @@ namespace {
 
 /// Waits longer than this are waits without end [s].
 constexpr double kForever = 1e8;
+
+Problem problem_of(const AwaitedInput& missed, int move) {
+  Problem problem;
+  problem.code = ErrorCode::kInputTimeout;
+  char text[96];
+  std::snprintf(text, sizeof text, "input %d was not %s within %g s: the run has ended on its path",
+                missed.input, missed.value ? "on" : "off", static_cast<double>(missed.timeout));
+  problem.message = text;
+  problem.ways_out = {"see what should have switched the input", "give it more time (timeout=)"};
+  problem.move = move;
+  problem.limit = static_cast<double>(missed.timeout);
+  return problem;
+}
 
 }  // namespace
 
@@ -69,7 +83,15 @@ bool LoopJob::wait(double timeout) {
     problem.time = motion_.nominal_time;
     throw MotionError(problem);
   }
+  const AwaitedInput missed = motion_.missed;
+  if (missed.input >= 0) throw MotionError(problem_of(missed, motion_.move));
   return true;
+}
+
+std::optional<InputWait> LoopJob::awaited() const {
+  const AwaitedInput awaited = motion_.awaited;
+  if (awaited.input < 0) return std::nullopt;
+  return InputWait{awaited.input, awaited.value, awaited.timeout};
 }
 
 void LoopJob::wish(Wish wish) {
@@ -89,10 +111,10 @@ void LoopJob::on_input(const InputReaction& reaction) {
     throw MotionError(ErrorCode::kBadArgument, "an input cannot make a run do that",
                       {"let it pause, resume or stop the run"});
   }
-  if (reaction.input < -1 || reaction.input >= InputReaction::kInputs) {
+  if (reaction.input < -1 || reaction.input >= kDigitalInputs) {
     throw MotionError(ErrorCode::kBadArgument,
                       "there is no input " + std::to_string(reaction.input) + "; inputs are 0 to " +
-                          std::to_string(InputReaction::kInputs - 1));
+                          std::to_string(kDigitalInputs - 1));
   }
   motion_.reactions[static_cast<std::size_t>(place - kWishes.begin())].store(
       reaction, std::memory_order_release);

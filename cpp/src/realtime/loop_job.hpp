@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -34,6 +35,7 @@ class LoopJob final : public OpenJob {
   }
   void on_input(const InputReaction& reaction) override;
   [[nodiscard]] RunState state() const override { return motion_.state; }
+  [[nodiscard]] std::optional<InputWait> awaited() const override;
   [[nodiscard]] double nominal_time() const override { return motion_.nominal_time; }
   [[nodiscard]] double duration() const override { return chain_.duration(); }
   [[nodiscard]] std::uint64_t overruns() const override { return motion_.overruns; }

@@ -105,6 +105,19 @@ double RateGovernor::settled_at(const RateState& now) const noexcept VIAPOINT_NO
   return std::max(now.tau, state.tau);
 }
 
+RateState RateGovernor::after(const RateState& now,
+                              double time) const noexcept VIAPOINT_NONBLOCKING {
+  RateState state = now;
+  for (int k = plan_.position; k < plan_.steps && time > 0.0; ++k) {
+    const Step& step = plan_.step[static_cast<std::size_t>(k)];
+    const double part = std::min(time, step.cycles * cycle_);
+    state = state.after(part, step.curvature);
+    time -= part;
+  }
+  if (time > 0.0) state = RateState{state.tau, state.rate, 0.0}.after(time, 0.0);
+  return state;
+}
+
 void RateGovernor::improve(const RateState& now, double target,
                            const Lookahead& lookahead) noexcept VIAPOINT_NONBLOCKING {
   const double end = changing() ? plan_.end_rate : now.rate;

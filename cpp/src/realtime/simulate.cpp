@@ -49,9 +49,22 @@ void check(const TimedCommand& command, const JointLimits& limits) {
     throw MotionError(ErrorCode::kBadArgument, "an override of " + number_text(command.value) +
                                                    " was given; it must lie in [0, 1]");
   }
+  if (command.kind == TimedCommand::Kind::kInput &&
+      (command.input < 0 || command.input >= kDigitalInputs)) {
+    throw MotionError(ErrorCode::kBadArgument,
+                      "there is no input " + std::to_string(command.input) + "; inputs are 0 to " +
+                          std::to_string(kDigitalInputs - 1));
+  }
 }
 
-void apply(const TimedCommand& command, Interpolator& interpolator) {
+/// Rests until a command comes, if one does.
+bool rests_for_good(const Interpolator& interpolator) {
+  const RunState state = interpolator.state();
+  return state == RunState::kPaused ||
+         (state == RunState::kWaiting && std::isinf(interpolator.awaited().timeout));
+}
+
+void apply(const TimedCommand& command, Interpolator& interpolator, std::uint64_t& inputs) {
   switch (command.kind) {
     case TimedCommand::Kind::kOverride:
       interpolator.set_override(command.value);
@@ -73,6 +86,11 @@ void apply(const TimedCommand& command, Interpolator& interpolator) {
       break;
     case TimedCommand::Kind::kJog:
       interpolator.jog(command.velocity);
+      break;
+    case TimedCommand::Kind::kInput:
+      inputs &= ~(std::uint64_t{1} << command.input);
+      if (command.value != 0.0) inputs |= std::uint64_t{1} << command.input;
+      interpolator.set_inputs(inputs);
       break;
   }
 }
@@ -98,11 +116,12 @@ std::vector<LogRecord> simulate(const Trajectory& trajectory, const JointLimits&
     refuse(trajectory.duration() / seconds);
   std::vector<LogRecord> log;
   double share = 1.0;
+  std::uint64_t inputs = 0;
   auto next = commands.begin();
   for (std::uint64_t k = 0; interpolator.active(); ++k) {
     const double now = static_cast<double>(k) * seconds;
     for (; next != commands.end() && next->time <= now + kCommandSlack; ++next) {
-      apply(*next, interpolator);
+      apply(*next, interpolator, inputs);
       if (next->kind == TimedCommand::Kind::kOverride) share = next->value;
     }
     Setpoint setpoint;
@@ -117,10 +136,11 @@ std::vector<LogRecord> simulate(const Trajectory& trajectory, const JointLimits&
     record.cycle = k;
     record.stamp = static_cast<std::int64_t>(k) * cycle.count();
     log.push_back(record);
-    if (record.state == RunState::kPaused && next == commands.end()) break;
+    const bool rests = rests_for_good(interpolator);
+    if (rests && next == commands.end()) break;
     // A rate that is what it was told to be stays until the end or the next command.
     double cycles = static_cast<double>(k) + 1.0;
-    if (record.state == RunState::kPaused) {
+    if (rests) {
       cycles = next->time / seconds;
     } else if (record.state == RunState::kRunning && record.rate < 0.0 && record.rate == -share) {
       cycles += record.nominal_time / (share * seconds);

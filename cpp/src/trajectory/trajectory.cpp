@@ -20,7 +20,14 @@ void add(const TrajectoryPiece& piece, OutputEffect& effect) {
   }
 }
 
+/// Shorter than this share of a piece, what is left of it is rounding.
+constexpr double kSliver = 1e-12;
+
 }  // namespace
+
+bool begins_before(const TrajectoryPiece& piece, double left) {
+  return left > kSliver * piece.duration;
+}
 
 Trajectory::Trajectory(std::vector<TrajectoryPiece> pieces, const JointLimits& limits,
                        const std::optional<JointState>& from)
@@ -43,10 +50,12 @@ Trajectory::Trajectory(std::vector<TrajectoryPiece> pieces, const JointLimits& l
                                                    " joints, its limits have " +
                                                    std::to_string(limits.joints()));
   }
+  timed_ = TimedChanges(pieces_, starts_);
   certificate_ = certify(pieces_, limits, from);
 }
 
 void Trajectory::index(const TrajectoryPiece& piece) {
+  if (piece.wait.any()) waits_.push_back(starts_.size());
   starts_.push_back(duration_);
   duration_ += piece.duration;
   OutputEffect outputs = outputs_.empty() ? OutputEffect{} : outputs_.back();
@@ -55,14 +64,12 @@ void Trajectory::index(const TrajectoryPiece& piece) {
 }
 
 Trajectory Trajectory::continued(size_t dropped, double leave, const Trajectory& next) const {
-  // Shorter than this share of a piece, what is left of it is rounding.
-  constexpr double kSliver = 1e-12;
   Trajectory whole;
   whole.certificate_ = next.certificate_;
   double left = leave - starts_[dropped];
   for (size_t i = dropped; i < pieces_.size(); ++i) {
     TrajectoryPiece piece = pieces_[i];
-    if (!(left > kSliver * piece.duration)) break;
+    if (!begins_before(piece, left)) break;
     const double share = left / piece.duration;
     left -= piece.duration;
     if (share < 1.0 - kSliver) piece = piece.until(share * piece.duration);
@@ -70,6 +77,8 @@ Trajectory Trajectory::continued(size_t dropped, double leave, const Trajectory&
   }
   whole.pieces_.insert(whole.pieces_.end(), next.pieces_.begin(), next.pieces_.end());
   for (const TrajectoryPiece& piece : whole.pieces_) whole.index(piece);
+  whole.timed_ =
+      TimedChanges(whole.pieces_, whole.starts_, timed_.outputs() | next.timed_.outputs());
   return whole;
 }
 

@@ -36,6 +36,25 @@ TrajectoryPiece TrajectoryPiece::until(double tau) const noexcept {
   return part;
 }
 
+TrajectoryPiece TrajectoryPiece::from(double tau) const noexcept {
+  TrajectoryPiece part = *this;
+  const double start = tau / duration;
+  // Horner's rule, again and again: the Taylor coefficients there.
+  for (std::size_t k = 0; k < 5; ++k) {
+    for (std::size_t i = 5; i-- > k;) part.timing[i] += start * part.timing[i + 1];
+  }
+  part.outputs = 0;
+  part.output = {};
+  part.wait = {};
+  double power = 1.0;
+  for (double& coefficient : part.timing) {
+    coefficient *= power;
+    power *= 1.0 - start;
+  }
+  part.duration = duration - tau;
+  return part;
+}
+
 JointState TrajectoryPiece::at(double tau) const noexcept {
   const auto [u, u1, u2, u3] = timing_at(*this, tau);
   JointState state;

@@ -24,6 +24,25 @@ std::optional<int> unknown_output(const TrajectoryPiece& piece) {
   return std::nullopt;
 }
 
+/// The first output of the piece whose time nothing can keep.
+std::optional<double> odd_time(const TrajectoryPiece& piece) {
+  for (size_t i = 0; i < static_cast<size_t>(piece.outputs); ++i) {
+    const double time = piece.output[i].time;
+    if (!(std::abs(time) <= kMostOutputTime)) return time;
+  }
+  return std::nullopt;
+}
+
+/// The arm can wait only where it rests, so where no input that fails to come makes it stop.
+bool is_wait(const TrajectoryPiece& piece) {
+  const InputWait& wait = piece.wait;
+  if (!wait.any()) return wait.input == -1;
+  const bool rests = std::all_of(piece.path.begin() + 1, piece.path.end(), [&](const auto& row) {
+    return std::all_of(row.begin(), row.begin() + piece.joints, [](double c) { return c == 0.0; });
+  });
+  return wait.input < kDigitalInputs && wait.timeout > 0.0 && rests;
+}
+
 bool is_count(int outputs) { return outputs >= 0 && outputs <= kMaxOutputsAPiece; }
 
 bool is_duration(double seconds) { return seconds > 0.0 && std::isfinite(seconds); }
@@ -42,6 +61,13 @@ std::string describe_fault(const TrajectoryPiece& piece, int joints) {
     text << "changes " << piece.outputs << " outputs; allowed are 0 to " << kMaxOutputsAPiece;
   } else if (const std::optional<int> output = unknown_output(piece)) {
     text << "changes output " << *output << "; outputs are 0 to " << kDigitalOutputs - 1;
+  } else if (const std::optional<double> time = odd_time(piece)) {
+    text << "changes an output " << *time << " s after its beginning; allowed are up to "
+         << kMostOutputTime << " s before or after it";
+  } else if (!is_wait(piece)) {
+    text << "waits for input " << piece.wait.input << " for " << piece.wait.timeout
+         << " s; inputs are 0 to " << kDigitalInputs - 1
+         << ", a time-out is above 0, and a piece that waits must rest";
   }
   return text.str();
 }
@@ -51,7 +77,7 @@ std::string describe_fault(const TrajectoryPiece& piece, int joints) {
 std::optional<std::string> find_fault(const TrajectoryPiece& piece, int joints) {
   const bool sound = piece.joints >= 1 && piece.joints <= kMaxJoints && piece.joints == joints &&
                      is_duration(piece.duration) && all_finite(piece) && is_count(piece.outputs) &&
-                     !unknown_output(piece);
+                     !unknown_output(piece) && !odd_time(piece) && is_wait(piece);
   if (sound) return std::nullopt;
   return describe_fault(piece, joints);
 }

@@ -30,6 +30,7 @@ __all__: list[str] = [
     "LARGEST_STEP",
     "Log",
     "MAX_JOINTS",
+    "MOST_OUTPUT_TIME",
     "MotionPieces",
     "MotionProgram",
     "MotionStream",
@@ -706,6 +707,8 @@ class MotionProgram:
         self,
         index: typing.SupportsInt | typing.SupportsIndex,
         value: bool,
+        distance: typing.SupportsFloat | typing.SupportsIndex,
+        time: typing.SupportsFloat | typing.SupportsIndex,
         file: str,
         line: typing.SupportsInt | typing.SupportsIndex,
     ) -> None: ...
@@ -759,6 +762,14 @@ class MotionProgram:
     def add_wait(
         self,
         seconds: typing.SupportsFloat | typing.SupportsIndex,
+        file: str,
+        line: typing.SupportsInt | typing.SupportsIndex,
+    ) -> None: ...
+    def add_wait_di(
+        self,
+        index: typing.SupportsInt | typing.SupportsIndex,
+        value: bool,
+        timeout: typing.SupportsFloat | typing.SupportsIndex | None,
         file: str,
         line: typing.SupportsInt | typing.SupportsIndex,
     ) -> None: ...
@@ -1109,9 +1120,9 @@ class MotionPieces:
         Program step, (k,).
         """
     @property
-    def outputs(self) -> list[tuple[int, int, bool]]:
+    def outputs(self) -> list[tuple[int, int, bool, float]]:
         """
-        Piece, output and value of every change.
+        Piece, output, value and time [s] of every change.
         """
     @property
     def path_of(self) -> list[int]:
@@ -1122,6 +1133,11 @@ class MotionPieces:
     def timing(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         Of x^k of every piece, (k, 6).
+        """
+    @property
+    def waits(self) -> list[tuple[int, int, bool, float | None]]:
+        """
+        Piece, input, value and time-out [s] of every wait for an input.
         """
 
 class WantedLeg:
@@ -1296,6 +1312,11 @@ class Job:
     def step(self) -> None: ...
     def stop(self, category: typing.SupportsInt | typing.SupportsIndex) -> None: ...
     def wait(self, timeout: typing.SupportsFloat | typing.SupportsIndex) -> bool: ...
+    @property
+    def awaited(self) -> tuple[int, bool, float] | None:
+        """
+        Input, value and time-out [s] that the run rests for, if it does.
+        """
     @property
     def duration(self) -> float: ...
     @property
@@ -1735,5 +1756,6 @@ ANGLE_TOLERANCE: float = 0.00017453292519943296
 CYCLE: float = 0.002
 LARGEST_STEP: float = 0.2
 MAX_JOINTS: int = 16
+MOST_OUTPUT_TIME: float = 2.0
 POSITION_TOLERANCE: float = 5e-05
 __version__: str = "0.1.0"

@@ -41,6 +41,8 @@ SHORTEST = 1e-30
 """Of a piece [s]: timing may leave slivers of rounding."""
 FORMAT = "viapoint motion"
 VERSION = 1
+OUTPUT_TIME = 2.0
+"""An output changes at most so long before or after the arm passes its place [s]."""
 
 
 @dataclass(frozen=True)
@@ -120,7 +122,7 @@ def read(data: bytes) -> MotionFile:
         corner_in(c, f"corners[{i}]", len(legs), len(paths)) for i, c in enumerate(corner_list)
     )
     pieces = [
-        members(p, f"pieces[{i}]", "path move duration timing", "outputs")
+        members(p, f"pieces[{i}]", "path move duration timing", "outputs wait")
         for i, p in enumerate(items(document["pieces"], "pieces"))
     ]
     if not pieces:
@@ -128,11 +130,25 @@ def read(data: bytes) -> MotionFile:
     for i, piece in enumerate(pieces):
         for k, change in enumerate(items(piece.get("outputs", []), f"pieces[{i}].outputs")):
             place = f"pieces[{i}].outputs[{k}]"
-            both = items(change, place)
-            if len(both) != 2:
-                refuse(place, "it must hold an output and its value")
-            integer(both[0], place, 0, 64)
-            truth(both[1], place)
+            told = items(change, place)
+            if len(told) not in (2, 3):
+                refuse(place, "it must hold an output, its value, and its time if it has one")
+            integer(told[0], place, 0, 64)
+            truth(told[1], place)
+            if len(told) == 3 and abs(number(told[2], place)) > OUTPUT_TIME:
+                refuse(place, f"its time must lie within {OUTPUT_TIME} s of the place")
+        if "wait" in piece:
+            place = f"pieces[{i}].wait"
+            told = items(piece["wait"], place)
+            if len(told) != 3:
+                refuse(place, "it must hold an input, its value, and a time-out or null")
+            integer(told[0], place, 0, 64)
+            truth(told[1], place)
+            if told[2] is not None and number(told[2], place) <= 0.0:
+                refuse(place, "its time-out must be above 0")
+            path = integer(piece["path"], f"pieces[{i}].path", 0, len(paths))
+            if paths[path, 1:].any():
+                refuse(place, "a piece that waits must rest")
     return MotionFile(
         name=text(document["name"], "name"),
         timed=kind == "timed",

@@ -74,6 +74,19 @@ SplineMove random_spline(std::mt19937& random, int joints) {
   return move;
 }
 
+SetOutput random_output(std::mt19937& random) {
+  SetOutput output{static_cast<int>(random() % 64), random() % 2 == 0};
+  if (random() % 2 == 0) output.distance = -0.1 / 3.0;
+  if (random() % 2 == 0) output.time = 0.1 / 7.0;
+  return output;
+}
+
+WaitInput random_wait(std::mt19937& random) {
+  WaitInput wait{static_cast<int>(random() % 64), random() % 2 == 0, std::nullopt};
+  if (random() % 2 == 0) wait.timeout = 1.0 / 3.0;
+  return wait;
+}
+
 MotionProgram random_program(std::mt19937& random) {
   MotionProgram program;
   const int joints = 1 + static_cast<int>(random() % 7);
@@ -84,7 +97,10 @@ MotionProgram random_program(std::mt19937& random) {
   const size_t steps = 1 + random() % 8;
   for (size_t i = 0; i < steps; ++i) {
     Step step;
-    switch (random() % 10) {
+    switch (random() % 11) {
+      case 10:
+        step.what = random_wait(random);
+        break;
       case 8:
         step.what = SetFrame{random_pose(random), random() % 2 == 0 ? "table \"3\"" : ""};
         break;
@@ -114,7 +130,7 @@ MotionProgram random_program(std::mt19937& random) {
         step.what = Wait{0.1 * static_cast<double>(random() % 10)};
         break;
       case 3:
-        step.what = SetOutput{static_cast<int>(random() % 64), random() % 2 == 0};
+        step.what = random_output(random);
         break;
       default:
         step.what = TimedMove{
@@ -123,6 +139,7 @@ MotionProgram random_program(std::mt19937& random) {
             static_cast<TimedSpace>(random() % 2)};
     }
     const bool moves = !std::holds_alternative<Wait>(step.what) &&
+                       !std::holds_alternative<WaitInput>(step.what) &&
                        !std::holds_alternative<SetOutput>(step.what) &&
                        !std::holds_alternative<SetFrame>(step.what) &&
                        !std::holds_alternative<SetTool>(step.what) &&
@@ -236,6 +253,10 @@ TEST(ProgramJson, RefusesWhatItWouldOtherwiseIgnore) {
                 .find("one of cubic, quintic, bezier, b_spline"),
             std::string::npos);
   EXPECT_NE(message(R"({"wait": 1, "speed": 1})").find("no speed"), std::string::npos);
+  EXPECT_NE(message(R"({"wait_di": {"index": 1, "value": true, "timeout": 0}})").find("above zero"),
+            std::string::npos);
+  EXPECT_NE(message(R"({"set_do": {"index": 1, "value": true, "way": 1}})").find("no member"),
+            std::string::npos);
   EXPECT_NE(message(R"({"ptp": {"joints": [0], "seconds": 1}})").find("no member \"seconds\""),
             std::string::npos);
   EXPECT_NE(message(R"({"wait": 1e400})").find("too large"), std::string::npos);

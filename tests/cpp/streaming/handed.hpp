@@ -28,6 +28,7 @@ class Recorder final : public OpenJob {
   void stop(StopCategory category) override { job_->stop(category); }
   void on_input(const InputReaction& reaction) override { job_->on_input(reaction); }
   [[nodiscard]] RunState state() const override { return job_->state(); }
+  [[nodiscard]] std::optional<InputWait> awaited() const override { return job_->awaited(); }
   [[nodiscard]] double nominal_time() const override { return job_->nominal_time(); }
   [[nodiscard]] double duration() const override { return job_->duration(); }
   [[nodiscard]] std::uint64_t overruns() const override { return job_->overruns(); }

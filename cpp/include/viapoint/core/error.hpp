@@ -41,6 +41,7 @@ enum class ErrorCode {
   kDiscontinuous,      ///< pieces that do not meet
   kDriveFault,         ///< the drive refused or failed
   kStopped,            ///< the run was stopped before its end
+  kInputTimeout,       ///< an input that the program waits for did not come in time
   kBusy,               ///< a run is already under way
   kFile,               ///< a file that cannot be read or written
   kInternal,           ///< a defect of viapoint itself

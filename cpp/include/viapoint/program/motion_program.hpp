@@ -103,9 +103,22 @@ struct SetTool {
 struct Wait {
   double seconds = 0.0;
 };
+/// The arm rests until a digital input is so.
+struct WaitInput {
+  int index = 0;  ///< 0 to 63
+  bool value = true;
+  /// After so long [s] the run ends there; empty: never.
+  std::optional<double> timeout;
+};
+/// A digital output changes where the path has got to, or some way or time from there. Where a
+/// corner rounds the point, that is the place on the path that is nearest to it.
 struct SetOutput {
   int index = 0;
   bool value = false;
+  /// Along the path of the tool, on the move after; negative: on the move before [m].
+  double distance = 0.0;
+  /// On the clock, after the arm passes that place; negative: before it does [s].
+  double time = 0.0;
 };
 /// The classic fixed-time form (textbook §3): segments of given duration between points, quartic
 /// transitions of ±t_acc about the inner ones. Stands alone in its program; starts at speed.
@@ -139,8 +152,8 @@ struct SourceLine {
 };
 
 struct Step {
-  std::variant<PtpMove, LinMove, CircMove, TurnMove, SplineMove, Wait, SetOutput, TimedMove,
-               SetFrame, SetTool>
+  std::variant<PtpMove, LinMove, CircMove, TurnMove, SplineMove, Wait, WaitInput, SetOutput,
+               TimedMove, SetFrame, SetTool>
       what;
   MoveOptions options;
   SourceLine source;

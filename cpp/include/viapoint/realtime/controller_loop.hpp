@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -59,7 +60,8 @@ class Job {
  public:
   virtual ~Job() = default;
   /// True when the run ended within `timeout` [s]: when the drive has measured the cycle after the
-  /// last setpoint was sent. @throws MotionError(kDriveFault) on a fault
+  /// last setpoint was sent. @throws MotionError(kDriveFault) on a fault; kInputTimeout where the
+  /// run has ended because an input did not come in the time its program gives it
   virtual bool wait(double timeout) = 0;
   virtual void pause() = 0;
   /// On along the path; from where a jog has brought the arm it first returns to the path.
@@ -77,6 +79,9 @@ class Job {
   /// @throws MotionError(kBadArgument) for another input or wish
   virtual void on_input(const InputReaction& reaction) = 0;
   [[nodiscard]] virtual RunState state() const = 0;
+  /// The input for which the arm rests on its path now, if it does; the time-out to about seven
+  /// digits.
+  [[nodiscard]] virtual std::optional<InputWait> awaited() const = 0;
   [[nodiscard]] virtual double nominal_time() const = 0;  ///< progress [s]
   [[nodiscard]] virtual double duration() const = 0;      ///< nominal [s]
   [[nodiscard]] virtual std::uint64_t overruns() const = 0;
@@ -192,16 +197,17 @@ void admit(const Trajectory& trajectory, const JointLimits& limits, const JointV
 
 /// A command of a simulated run.
 struct TimedCommand {
-  enum class Kind { kOverride, kPause, kResume, kStop, kStep, kBackward, kJog };
+  enum class Kind { kOverride, kPause, kResume, kStop, kStep, kBackward, kJog, kInput };
   double time = 0.0;  ///< [s] from the start of the run
   Kind kind = Kind::kOverride;
-  double value = 0.0;      ///< of kOverride
+  double value = 0.0;      ///< of kOverride; of kInput 1 for on, 0 for off
   JointVector velocity{};  ///< of kJog, as ControllerLoop::jog; it counts for 250 ms and in a pause
+  int input = 0;           ///< of kInput, 0 to 63; all are off at first
 };
 
 /// The same Interpolator in virtual time, without thread or drive: one record a cycle, until the
 /// motion has ended or rests for good. A motion paused and never resumed ends when it rests; so do
-/// a step, and the way back.
+/// a step, the way back, and a wait for an input that never comes.
 [[nodiscard]] std::vector<LogRecord> simulate(const Trajectory& trajectory,
                                               const JointLimits& limits,
                                               std::vector<TimedCommand> commands,

@@ -7,14 +7,13 @@
 
 #include "viapoint/core/nonblocking.hpp"
 #include "viapoint/realtime/interpolator.hpp"
+#include "viapoint/trajectory/trajectory_piece.hpp"
 
 namespace viapoint {
 
 /// A wish that the loop makes by itself, in the cycle after the drive has reported an input so. It
 /// does so once; an input that is so already counts.
 struct InputReaction {
-  static constexpr int kInputs = 64;
-
   std::int16_t input = -1;   ///< 0 to 63; -1 for none
   bool value = true;         ///< on or off
   Wish wish = Wish::kPause;  ///< kPause, kRun or kStop

@@ -9,12 +9,14 @@
 #include "viapoint/core/joint_limits.hpp"
 #include "viapoint/core/nonblocking.hpp"
 #include "viapoint/realtime/drive.hpp"
+#include "viapoint/realtime/input_gate.hpp"
 #include "viapoint/realtime/jog.hpp"
 #include "viapoint/realtime/lookahead.hpp"
 #include "viapoint/realtime/motion_link.hpp"
 #include "viapoint/realtime/motion_log.hpp"
 #include "viapoint/realtime/path_return.hpp"
 #include "viapoint/realtime/rate_governor.hpp"
+#include "viapoint/realtime/timed_outputs.hpp"
 #include "viapoint/trajectory/trajectory.hpp"
 
 namespace viapoint {
@@ -35,7 +37,12 @@ enum class Wish : std::uint8_t {
 /// last one is its end point. Override, pause, resume and stop change only the rate at which
 /// nominal time runs (RateGovernor): the geometry never changes, and every joint keeps its limits
 /// through each change. A wait is a piece of constant position and runs at the rate like the rest;
-/// outputs change with the first setpoint of the piece that carries them.
+/// outputs change with the first setpoint of the piece that carries them, or the time they are told
+/// before or after that (TimedOutputs).
+///
+/// A piece that waits for an input begins when that is so (InputGate). Until then the arm rests
+/// where it begins, the state is kWaiting, and after the wait's time-out the motion is over
+/// (kStopped, input_missed()). A pause holds the clock of the wait.
 ///
 /// Backward it is the mirrored motion that runs, by the same law: it turns at rest, and rests at
 /// the motion's start. Outputs are held meanwhile, and on the way forward again until the farthest
@@ -73,6 +80,8 @@ class Interpolator {
   void set_outputs(std::uint64_t outputs) noexcept VIAPOINT_NONBLOCKING { outputs_ = outputs; }
   /// Share of the planned speed, clamped to [0, 1]; 0 acts as a pause. Kept between motions.
   void set_override(double share) noexcept VIAPOINT_NONBLOCKING;
+  /// Inputs as measured last, bit i for input i: what the motion waits for. Kept between motions.
+  void set_inputs(std::uint64_t inputs) noexcept VIAPOINT_NONBLOCKING { inputs_ = inputs; }
   /// A stop is final for its motion; each kStep is one step more.
   void wish(Wish wish) noexcept VIAPOINT_NONBLOCKING;
 
@@ -108,6 +117,12 @@ class Interpolator {
   /// the clock's figures and the measurement.
   void describe(const Setpoint& setpoint, LogRecord& record) const noexcept VIAPOINT_NONBLOCKING;
 
+  /// True while the arm rests for an input, or has rested for one when it was stopped or paused.
+  [[nodiscard]] bool awaits_input() const noexcept { return motion_ != nullptr && gate_.waits(); }
+  /// True where the last motion has ended because an input did not come.
+  [[nodiscard]] bool input_missed() const noexcept { return input_missed_; }
+  /// The input of both. @pre one of them
+  [[nodiscard]] const InputWait& awaited() const noexcept { return gate_.wait(); }
   /// True from begin() until a tick has returned kFinished or kStopped.
   [[nodiscard]] bool active() const noexcept { return motion_ != nullptr; }
   /// Of the last setpoint: nominal time since begin() [s], rate dτ/dt (negative backward), program
@@ -139,6 +154,10 @@ class Interpolator {
   RunState tick_return(Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKING;
   RunState tick_motion(Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKING;
   RunState tick_waiting(Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKING;
+  RunState tick_at_gate(Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKING;
+  void stop_at_gate() noexcept VIAPOINT_NONBLOCKING;
+  [[nodiscard]] std::uint64_t outputs_with(std::uint64_t timed) const noexcept VIAPOINT_NONBLOCKING;
+  void switch_outputs(bool is_ahead) noexcept VIAPOINT_NONBLOCKING;
   void turn_where_wanted() noexcept VIAPOINT_NONBLOCKING;
   void rest_at(double way) noexcept VIAPOINT_NONBLOCKING;
   void end_step(std::size_t piece) noexcept VIAPOINT_NONBLOCKING;
@@ -156,6 +175,9 @@ class Interpolator {
   int jog_cycles_;  ///< that a wish counts for
   Lookahead lookahead_;
   PathReturn return_;
+  TimedOutputs timed_outputs_;
+  InputGate gate_;
+  bool input_missed_ = false;
   bool off_path_ = false;  ///< jogged away while paused, or on the way back
   bool open_ = false;      ///< more may come
   bool waits_ = false;     ///< at the end of an open motion
@@ -181,6 +203,7 @@ class Interpolator {
   int move_ = -1;
   int looked_at_ = 0;
   std::uint64_t cycles_ = 0;
+  std::uint64_t inputs_ = 0;
   std::uint64_t outputs_ = 0;
   std::uint64_t outputs_before_ = 0;  ///< when the motion began
   JointVector position_;

@@ -20,7 +20,7 @@ enum class RunState : std::uint8_t {
   kFault,
   kJogging,    ///< follows wished velocities, or comes to rest after them
   kReturning,  ///< on its way back to where a jog left the path
-  kWaiting,    ///< at rest where the motion ends for now: more of it has not come yet
+  kWaiting,    ///< at rest for an input, or where the motion ends for now: more has not come yet
 };
 
 [[nodiscard]] const char* to_string(RunState state);

@@ -23,6 +23,18 @@ struct NumberedWish {
 };
 static_assert(std::atomic<NumberedWish>::is_always_lock_free);
 
+/// The input that a motion waits for, as InputWait has it, in one word.
+struct AwaitedInput {
+  std::int16_t input = -1;
+  bool value = true;
+  float timeout = 0.0F;  ///< [s]
+
+  [[nodiscard]] static AwaitedInput of(const InputWait& wait) noexcept {
+    return {wait.input, wait.value, static_cast<float>(wait.timeout)};
+  }
+};
+static_assert(std::atomic<AwaitedInput>::is_always_lock_free);
+
 /// One motion on its way through the loop, and what both sides of the boundary say about it while
 /// it runs. Owned by an ordinary thread until it has come back.
 struct QueuedMotion {
@@ -46,6 +58,8 @@ struct QueuedMotion {
   std::atomic<std::uint64_t> missed_cycles{0};
   std::atomic<std::uint64_t> lost_records{0};
   std::atomic<std::uint64_t> waited_cycles{0};
+  std::atomic<AwaitedInput> awaited{};  ///< for which it rests
+  std::atomic<AwaitedInput> missed{};   ///< that did not come in time, before `state`
 };
 
 /// Bounded, lock-free, one producer and one consumer each way.

@@ -58,6 +58,9 @@ class RateGovernor {
   /// Nominal time at which the change under way is over [s]; `now` where there is none. What comes
   /// after it may still become another motion.
   [[nodiscard]] double settled_at(const RateState& now) const noexcept VIAPOINT_NONBLOCKING;
+  /// State in `time` [s], if nothing else is decided until then.
+  [[nodiscard]] RateState after(const RateState& now,
+                                double time) const noexcept VIAPOINT_NONBLOCKING;
   /// Decides γ [1/s²] for the cycle that begins at `now`, on the way to the rate `target`.
   [[nodiscard]] double decide(const RateState& now, double target,
                               const Lookahead& lookahead) noexcept VIAPOINT_NONBLOCKING;

@@ -10,6 +10,7 @@
 
 #include "viapoint/core/joint_limits.hpp"
 #include "viapoint/trajectory/certificate.hpp"
+#include "viapoint/trajectory/timed_changes.hpp"
 #include "viapoint/trajectory/trajectory_piece.hpp"
 
 namespace viapoint {
@@ -19,6 +20,10 @@ struct OutputEffect {
   std::uint64_t changed = 0;  ///< those that it sets or clears
   std::uint64_t on = 0;       ///< those that are on after it, of the changed ones
 };
+
+/// Whether a motion that is left `left` [s] after this piece begins has begun it: what is shorter
+/// than rounding of the piece's duration does not count.
+[[nodiscard]] bool begins_before(const TrajectoryPiece& piece, double left);
 
 /// Immutable once built. Threads: any.
 class Trajectory {
@@ -32,7 +37,8 @@ class Trajectory {
              const std::optional<JointState>& from = std::nullopt);
 
   /// This motion without its first `dropped` pieces, left at `leave` [s of this motion] for `next`.
-  /// Nothing is proven anew: its certificate is that of `next`.
+  /// Nothing is proven anew: its certificate is that of `next`. Outputs that are told a time in
+  /// either are among timed_changes().
   /// @pre start_of(dropped) < leave; the states agree where the two meet, and the joints too
   [[nodiscard]] Trajectory continued(size_t dropped, double leave, const Trajectory& next) const;
 
@@ -50,6 +56,11 @@ class Trajectory {
   /// What the pieces up to and with piece i do to the outputs, so that a cycle that passes over
   /// many pieces looks at one. Real-time: safe, O(1).
   [[nodiscard]] const OutputEffect& outputs_after(size_t piece) const { return outputs_[piece]; }
+  /// Every change of the outputs that are told a time anywhere in the motion: outputs_after() is
+  /// not how these change. Real-time: safe.
+  [[nodiscard]] const TimedChanges& timed_changes() const { return timed_; }
+  /// Pieces that begin with a wait for an input, rising. Real-time: safe.
+  [[nodiscard]] const std::vector<size_t>& waits() const { return waits_; }
   [[nodiscard]] const Certificate& certificate() const { return certificate_; }
   /// The planner adds what it alone knows (deviations, manipulability).
   [[nodiscard]] Certificate& certificate() { return certificate_; }
@@ -63,6 +74,8 @@ class Trajectory {
   std::vector<TrajectoryPiece> pieces_;
   std::vector<double> starts_;
   std::vector<OutputEffect> outputs_;
+  TimedChanges timed_;
+  std::vector<size_t> waits_;
   double duration_ = 0.0;
   /// Notes when a piece begins and what it leaves of the outputs.
   void index(const TrajectoryPiece& piece);

@@ -17,6 +17,7 @@ class EndedJob final : public Job {
   void stop(StopCategory) override {}
   void on_input(const InputReaction&) override {}
   [[nodiscard]] RunState state() const override { return RunState::kFinished; }
+  [[nodiscard]] std::optional<InputWait> awaited() const override { return std::nullopt; }
   [[nodiscard]] double nominal_time() const override { return 1.0; }
   [[nodiscard]] double duration() const override { return 1.0; }
   [[nodiscard]] std::uint64_t overruns() const override { return report_.overruns; }
