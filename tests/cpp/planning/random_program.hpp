@@ -180,7 +180,13 @@ class ProgramMaker {
   void add_between(Script& script) {
     if (random_() % 12 == 0) script.add(Wait{random_() % 3 == 0 ? 0.0 : 0.1 * uniform()});
     for (size_t k = random_() % 12 == 0 ? 1 + random_() % 9 : 0; k > 0; --k) {
-      script.add(SetOutput{static_cast<int>(random_() % 64), random_() % 2 == 0});
+      const unsigned draw = static_cast<unsigned>(random_());
+      SetOutput output{static_cast<int>(draw % 64), random_() % 2 == 0};
+      if ((draw >> 6) % 4 == 0) output.time = (draw >> 8) % 2 == 0 ? -0.05 : 0.02;
+      if ((draw >> 9) % 4 == 0 && robot_.has_kinematics()) {
+        output.distance = (draw >> 11) % 2 == 0 ? -1e-3 : 1e-3;
+      }
+      script.add(output);
     }
   }
 
