@@ -10,7 +10,7 @@ import pytest
 import viapoint as vp
 from viapoint import _session, errors, mm
 from viapoint._run_log import RunLog
-from viapoint.verifier import MotionFileError, verify
+from viapoint.verifier import MotionFileError, seal, verify
 
 HOME = np.array([0, -1.5, 1.5, -1.5, -1.5, 0])
 
@@ -129,7 +129,7 @@ def test_a_motion_file_with_a_wrong_wait_is_refused(ur5e, tmp_path, wait):
     document = json.loads(path.read_text())
     row = next(p for p in document["pieces"] if "wait" in p)
     row["wait"] = wait
-    path.write_text(json.dumps(document))
+    path.write_bytes(seal(json.dumps(document)[:-1] + "\n"))
     with pytest.raises(MotionFileError, match="wait"):
         verify(path)
 
@@ -139,7 +139,7 @@ def test_a_motion_file_waits_only_where_it_rests(ur5e, tmp_path):
     vp.Program(ur5e, start=HOME).movel(there(ur5e)).plan().save(path)
     document = json.loads(path.read_text())
     document["pieces"][0]["wait"] = [1, True, None]
-    path.write_text(json.dumps(document))
+    path.write_bytes(seal(json.dumps(document)[:-1] + "\n"))
     with pytest.raises(MotionFileError, match="rest"):
         verify(path)
 
@@ -202,7 +202,7 @@ def test_a_stream_waits_and_switches(virtual):
             threading.Timer(0.5, lambda: arm.set_input(7, True)).start()
         with arm.stream() as stream:
             stream.movej([0.1, 0.1]).set_do(2, True, time=0.1).wait_di(7, timeout=30.0)
-            stream.movej([0.0, 0.0], zone=0.0).set_do(3, True, distance=-0.01).movej([0.1, 0.0])
+            stream.movej([0.0, 0.0]).set_do(3, True, distance=-0.01).movej([0.1, 0.0])
         log = stream.job.log
     assert stream.job.state == "finished"
     assert log.outputs[-1] == 12
