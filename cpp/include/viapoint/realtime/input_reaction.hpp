@@ -7,7 +7,7 @@
 
 #include "viapoint/core/nonblocking.hpp"
 #include "viapoint/realtime/interpolator.hpp"
-#include "viapoint/trajectory/trajectory_piece.hpp"
+#include "viapoint/trajectory/trajectory.hpp"
 
 namespace viapoint {
 

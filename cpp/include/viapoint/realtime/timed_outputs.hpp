@@ -9,7 +9,7 @@
 
 #include "viapoint/core/nonblocking.hpp"
 #include "viapoint/realtime/rate_governor.hpp"
-#include "viapoint/trajectory/timed_changes.hpp"
+#include "viapoint/trajectory/trajectory.hpp"
 
 namespace viapoint {
 
