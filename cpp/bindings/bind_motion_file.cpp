@@ -247,6 +247,19 @@ void bind_motion_file(py::module_& m) {
           "orientation", [](const WantedLeg& leg) { return orientation_columns(*leg.curve); },
           "Steady turn or spline of the tool over s; only where on_curve.")
       .def_property_readonly(
+          "merged",
+          [](const WantedLeg& leg) {
+            std::vector<std::tuple<CornerOutcome, Array, Array>> points;
+            for (const MergedPoint& point : leg.merged) {
+              points.emplace_back(point.outcome, vector_array(point.at),
+                                  matrix_array(point.rotation));
+            }
+            return points;
+          },
+          "The points that it passes without a corner: what became of the zone, joints (n,) or "
+          "tool "
+          "point (3,), and the tool's rotation (3, 3) as they were told.")
+      .def_property_readonly(
           "hold", [](const WantedLeg& leg) { return hold_name(leg.hold); },
           "\"pose\", \"axis\", \"position\" or \"wrist\".")
       .def_property_readonly(

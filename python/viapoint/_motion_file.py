@@ -81,9 +81,6 @@ class _Writer:
             before, after = cuts.get(k, ([], []))
             numbers = list(range(len(stretches), len(stretches) + len(before) + len(after)))
             stretches += [*before, *after]
-            angle = {}
-            if corner.asked_angle is not None:
-                angle = {"angle": corner.asked_angle, "used_angle": corner.used_angle}
             corner_rows.append(
                 {
                     "leg": self._leg_of[corner.move],
@@ -95,7 +92,7 @@ class _Writer:
                     "reason": corner.reason,
                     "before": numbers[: len(before)],
                     "after": numbers[len(before) :],
-                    **angle,
+                    **_angle(corner),
                 }
             )
         timed = any("timed" in step for step in self._steps)
@@ -155,9 +152,7 @@ class _Writer:
     def _leg(self, leg: _core.WantedLeg) -> dict[str, Any]:
         path = leg.path
         row: dict[str, Any] = {"move": leg.move, "tool": self._tool_number(np.asarray(leg.tool))}
-        source = self._steps[leg.move].get("source", {})
-        if source.get("line", 0) > 0:
-            row |= {"file": source.get("file", ""), "line": source["line"]}
+        row |= self._source(leg.move)
         row["length"] = float(np.asarray(path["lengths"]).sum())
         if leg.on_curve:
             row["hold"] = leg.hold
@@ -170,7 +165,26 @@ class _Writer:
             row["joints"] = _plain(path)
         if leg.scale is not None:
             row["scale"] = leg.scale
+        if leg.merged:
+            row["merged"] = [
+                self._merged(point, at, rotation if row["hold"] == "pose" else None)
+                for point, at, rotation in leg.merged
+            ]
         return row
+
+    def _merged(self, point: _core.Corner, at: Vector, rotation: Vector | None) -> dict[str, Any]:
+        row = {"move": point.move, **self._source(point.move), "at": at.tolist()}
+        if rotation is not None:
+            row["rotation"] = rotation.tolist()
+        row |= {"kind": point.kind, "asked": point.asked, "used": point.used}
+        return row | _angle(point)
+
+    def _source(self, move: int) -> dict[str, Any]:
+        """Tell the line of the script where it is known."""
+        source = self._steps[move].get("source", {})
+        if source.get("line", 0) > 0:
+            return {"file": source.get("file", ""), "line": source["line"]}
+        return {}
 
     def _tool_number(self, tool: Vector) -> int:
         for i, known in enumerate(self._tools):
@@ -257,3 +271,10 @@ def _bounds(values: Vector) -> list[float | None]:
 
 def _compact(value: object) -> str:
     return json.dumps(value, allow_nan=False, separators=(", ", ": "))
+
+
+def _angle(corner: _core.Corner) -> dict[str, float]:
+    """Tell what a zone allows the tool's orientation, where it bounds it."""
+    if corner.asked_angle is None:
+        return {}
+    return {"angle": corner.asked_angle, "used_angle": corner.used_angle}

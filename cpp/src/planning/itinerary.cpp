@@ -216,10 +216,10 @@ class ItineraryWalk::Walk {
 
   template <typename Move, typename Build>
   void build_curve(const Move& move, const std::optional<Target>& goal, const Build& leg_of) {
-    Move by_wrist = move;
-    by_wrist.orientation = Orientation::kWrist;
-    std::function<Leg()> another;
-    if (move.orientation != Orientation::kWrist) another = [&] { return leg_of(by_wrist); };
+    const bool by_wrist = move.orientation == Orientation::kWrist;
+    Move other = move;
+    other.orientation = by_wrist ? Orientation::kLeast : Orientation::kWrist;
+    const OtherWay another{[&] { return leg_of(other); }, by_wrist ? kByAllJoints : kByWrist};
     const std::function<std::vector<std::string>()> ways = [&]() -> std::vector<std::string> {
       if (!goal) return {};
       return ways_out_of(*goal, at_, *builder_, another);

@@ -12,9 +12,16 @@
 
 namespace viapoint::planning {
 
+/// A point in the space in which the legs are straight, and the tool's orientation where it counts.
+struct MergedPlace {
+  JointVector at;  ///< joints (n,), or the tool point (3,) [m]
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+};
+
 /// What a leg that was made of several deviates from them by, both ways.
 struct MergedLegs {
   std::vector<CornerOutcome> points;  ///< what became of the points between them
+  std::vector<MergedPlace> places;    ///< where these are as they were told
   double distance = 0.0;              ///< [m], in joint space [rad or m, 2-norm]
   double turn = 0.0;                  ///< of the tool [rad]
   double at_tool = 0.0;               ///< a bound of the distance there [m]

@@ -124,17 +124,17 @@ void LegMerger::add(Leg leg) {
   if (!may_go_on) flush();
 }
 
-LegMerger::Place LegMerger::place_of(const Leg& leg, const JointVector& q) {
+MergedPlace LegMerger::place_of(const Leg& leg, const JointVector& q) {
   if (in_joints(leg)) return {q};
   const Pose pose = leg.robot->forward().pose(q);
-  Place place{pose.translation()};
+  MergedPlace place{pose.translation()};
   if (*hold_of(std::get<LinMove>(leg.straight)) == Hold::kPose) place.rotation = pose.linear();
   return place;
 }
 
-LegMerger::Offset LegMerger::offset_of(std::span<const Place> places) {
+LegMerger::Offset LegMerger::offset_of(std::span<const MergedPlace> places) {
   Offset offset;
-  const Place &first = places.front(), &last = places.back();
+  const MergedPlace &first = places.front(), &last = places.back();
   const auto along = (last.at - first.at).eval();
   const double square = along.squaredNorm();
   const Eigen::Vector3d turn = rotation_log(first.rotation.transpose() * last.rotation);
@@ -249,6 +249,7 @@ std::optional<Leg> LegMerger::merged() const {
     point.cut = in_joints(last) ? at_the_tool(leg, point.used) : point.used;
     point.merged_into = last.step;
     leg.merged.points.push_back(std::move(point));
+    leg.merged.places.push_back(places_[k + 1]);
   }
   return found;
 }

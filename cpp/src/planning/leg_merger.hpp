@@ -38,11 +38,6 @@ class LegMerger {
   }
 
  private:
-  /// In the space in which the legs are straight, and the tool's orientation where it counts.
-  struct Place {
-    Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxJoints, 1> at;
-    Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
-  };
   /// How far the points of a run are from the leg from its start to its end.
   struct Offset {
     std::vector<double> point;       ///< distance of each inner point
@@ -53,8 +48,8 @@ class LegMerger {
     double first = 0.0, last = 0.0;  ///< of the ends from their neighbours
   };
 
-  [[nodiscard]] static Place place_of(const Leg& leg, const JointVector& q);
-  [[nodiscard]] static Offset offset_of(std::span<const Place> places);
+  [[nodiscard]] static MergedPlace place_of(const Leg& leg, const JointVector& q);
+  [[nodiscard]] static Offset offset_of(std::span<const MergedPlace> places);
   [[nodiscard]] bool goes_on_with(const Leg& leg);
   /// From the start of the run to its end; nothing where none can be made.
   [[nodiscard]] std::optional<Leg> one_leg() const;
@@ -62,8 +57,8 @@ class LegMerger {
 
   LineTolerance tolerance_;
   Emit emit_;
-  std::vector<Leg> run_;       ///< held back: one, or all that make one leg
-  std::vector<Place> places_;  ///< its start and the ends of its legs
+  std::vector<Leg> run_;             ///< held back: one, or all that make one leg
+  std::vector<MergedPlace> places_;  ///< its start and the ends of its legs
   bool merges_ = true;
   Zone before_;  ///< of the leg before the run
 };

@@ -58,7 +58,11 @@ std::vector<WantedLeg> wanted_legs(const RobotPtr& robot, const MotionProgram& p
   for (const planning::Item& item : itinerary.items) {
     const auto* leg = std::get_if<Leg>(&item);
     if (leg == nullptr) continue;
-    WantedLeg wanted{leg->robot, leg->step, leg->path, nullptr, Hold::kPose, leg->options};
+    WantedLeg wanted{leg->robot, leg->step, leg->path, nullptr, Hold::kPose, leg->options, {}};
+    for (size_t k = 0; k < leg->merged.points.size(); ++k) {
+      const planning::MergedPlace& place = leg->merged.places[k];
+      wanted.merged.push_back({leg->merged.points[k], place.at, place.rotation});
+    }
     if (leg->cartesian) {
       const auto index = static_cast<size_t>(leg->step);
       const Step step = in_base(program.steps[index], frames[index]);

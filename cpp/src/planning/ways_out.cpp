@@ -17,17 +17,12 @@ bool works(const Build& build) {
 }  // namespace
 
 std::vector<std::string> ways_out_of(const Target& goal, const JointVector& start,
-                                     const LegBuilder& builder,
-                                     const std::function<Leg()>& by_wrist) {
+                                     const LegBuilder& builder, const OtherWay& another) {
   std::vector<std::string> ways;
   if (works([&] { return builder.ptp(PtpMove{goal}, start); })) {
     ways.emplace_back("a joint move to the same target: movej(...)");
   }
-  if (by_wrist && works(by_wrist)) {
-    ways.emplace_back(
-        "the same curve of the tool position with the wrist joints interpolated: "
-        "orientation=\"wrist\"");
-  }
+  if (works(another.build)) ways.emplace_back(another.words);
   return ways;
 }
 

@@ -13,6 +13,10 @@ namespace {
 /// Length of a cell over w.
 constexpr double kCellShare = 0.8;
 
+/// The shortest ramp out of rest, of its stretch: one that is shorter, where jerk is next to free,
+/// saves no time worth the name, and is lost in rounding.
+constexpr double kLeastRamp = 1e-4;
+
 /// Length of the ramp out of rest: constant jerk is best up to there.
 double ramp_length(const Samples& samples, bool from_end) {
   const size_t count = samples.all.size();
@@ -25,7 +29,7 @@ double ramp_length(const Samples& samples, bool from_end) {
   const double rise = near.change * near.change * near.change / (6.0 * near.jerk * near.jerk);
   const size_t parts = samples.parts(from_end ? samples.first.size() - 2 : 0);
   const double first = std::abs(at(parts).s - at(0).s);
-  return std::min({0.1 * peak, 0.4 * rise, 0.25 * first});
+  return std::min({0.1 * peak, std::max(0.4 * rise, kLeastRamp * first), 0.25 * first});
 }
 
 /// z between samples, by share.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -44,6 +45,22 @@ class Limits:
 
 
 @dataclass(frozen=True)
+class MergedPoint:
+    """A point as it was told, whose corner is none since a straight leg passes it so near."""
+
+    move: int
+    at: Array
+    """Joints (n,), or the tool point (3,) [m]."""
+    rotation: Array | None
+    """Of the tool, (3, 3), where the leg holds it."""
+    kind: str
+    asked: float
+    used: float
+    angle: float | None
+    used_angle: float
+
+
+@dataclass(frozen=True)
 class Leg:
     """What is asked of one move."""
 
@@ -60,6 +77,7 @@ class Leg:
     angular_speed: float | None
     angular_acceleration: float | None
     scale: float
+    merged: tuple[MergedPoint, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -157,7 +175,7 @@ def leg_in(value: object, place: str, n: int, tools: int) -> Leg:
         value,
         place,
         "move tool hold length",
-        "joints position orientation scale file line " + " ".join(TOOL_RATES),
+        "joints position orientation scale file line merged " + " ".join(TOOL_RATES),
     )
     hold = text(given["hold"], f"{place}.hold", HOLDS)
     joints: Quintics | None = None
@@ -189,7 +207,42 @@ def leg_in(value: object, place: str, n: int, tools: int) -> Leg:
         length=length,
         **{name: optional_number(given.get(name), f"{place}.{name}", 1e-9) for name in TOOL_RATES},
         scale=scale,
+        merged=tuple(
+            _merged_in(point, f"{place}.merged[{i}]", hold, n)
+            for i, point in enumerate(items(given.get("merged", []), f"{place}.merged"))
+        ),
     )
+
+
+def _merged_in(value: object, place: str, hold: str, n: int) -> MergedPoint:
+    keys = "move at kind asked used" + (" rotation" if hold == "pose" else "")
+    given = members(value, place, keys, "file line angle used_angle")
+    if "file" in given:
+        text(given["file"], f"{place}.file")
+        integer(given.get("line"), f"{place}.line", 1, MOST_STEPS)
+    rotation = None
+    if "rotation" in given:
+        rotation = array(given["rotation"], f"{place}.rotation", (3, 3))
+        if np.abs(rotation @ rotation.T - np.eye(3)).max() > ROTATION_SLACK:
+            refuse(f"{place}.rotation", "it is no rotation")
+    kinds = ("joint_deviation",) if hold == "joints" else ("radius", "deviation")
+    return MergedPoint(
+        move=integer(given["move"], f"{place}.move", 0, MOST_STEPS),
+        at=array(given["at"], f"{place}.at", (n if hold == "joints" else 3,)),
+        rotation=rotation,
+        kind=text(given["kind"], f"{place}.kind", kinds),
+        asked=number(given["asked"], f"{place}.asked", 0.0),
+        used=number(given["used"], f"{place}.used", 0.0),
+        **_angle_in(given, place),
+    )
+
+
+def _angle_in(given: dict[str, Any], place: str) -> dict[str, Any]:
+    """Read what a zone allows the tool's orientation, and what is said to be used of it."""
+    return {
+        "angle": number(given["angle"], f"{place}.angle", 0.0, np.pi) if "angle" in given else None,
+        "used_angle": number(given.get("used_angle", 0.0), f"{place}.used_angle", 0.0, np.pi),
+    }
 
 
 def _require_length(chain: Quintics, length: float, place: str) -> None:
@@ -262,8 +315,7 @@ def corner_in(value: object, place: str, legs: int, paths: int) -> Corner:
         cut=number(given["cut"], f"{place}.cut", 0.0),
         before=cuts[0],
         after=cuts[1],
-        angle=number(given["angle"], f"{place}.angle", 0.0, np.pi) if "angle" in given else None,
-        used_angle=number(given.get("used_angle", 0.0), f"{place}.used_angle", 0.0, np.pi),
+        **_angle_in(given, place),
     )
 
 

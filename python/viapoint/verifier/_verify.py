@@ -8,6 +8,7 @@ from ._claim_checks import check_claims
 from ._deviation_checks import check_deviation
 from ._findings import Verdict
 from ._joint_checks import check_joints
+from ._merged_checks import check_merged
 from ._motion_file import read
 from ._speed_checks import check_tool_rates, scales_of
 from ._structure_checks import check_structure
@@ -46,6 +47,7 @@ def verify_bytes(data: bytes) -> Verdict:
     check_joints(motion, scales_of(motion), verdict)
     check_deviation(motion, verdict)
     check_zones(motion, verdict)
+    check_merged(motion, verdict)
     check_tool_rates(motion, verdict)
     check_claims(motion, verdict)
     return verdict

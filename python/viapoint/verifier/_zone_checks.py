@@ -13,6 +13,7 @@ from ._deviation_checks import place_on
 from ._file_parts import Corner
 from ._findings import Finding, Verdict
 from ._jets import constant, largest, polynomial_jets
+from ._merged_checks import extent_of
 from ._motion_file import MotionFile
 from ._search import prove_below
 
@@ -101,10 +102,14 @@ class _Check(ABC):
         zones: list[Corner] = [self.motion.corners[k] for k in self.owners]
         claimed = np.array([c.used_angle if self.space == "turn" else c.used for c in zones])
         asked = np.array([c.angle or 0.0 if self.space == "turn" else c.asked for c in zones])
+        # What merging has used of the zones of its legs is not there for the corner.
+        slack = SHARE_SLACK * claimed + 1e-12
+        claimed = np.maximum(claimed - self._merged(zones), 0.0)
         sizes, whole = claimed, asked
         if self.space == "turn":
             sizes, whole = quaternion_distance(claimed), quaternion_distance(asked)
-        used = sizes * (1.0 + SHARE_SLACK) + 1e-12
+            slack = 0.5 * slack
+        used = sizes + slack
         worst = prove_below(self.bounds, used, parts=4)
         reached = worst.bound
         if self.space == "turn":
@@ -120,6 +125,14 @@ class _Check(ABC):
                 )
             )
         return float((worst.bound / np.maximum(whole, 1e-300)).max())
+
+    def _merged(self, zones: list[Corner]) -> Array:
+        """Return what merging has used of each zone, where that counts from the legs as told."""
+        if isinstance(self, _RadiusCheck):
+            return np.zeros(len(zones))
+        extents = [extent_of(leg) for leg in self.motion.legs]
+        used = [e.turn if self.space == "turn" else e.distance for e in extents]
+        return np.array([max(used[zone.leg], used[zone.leg + 1]) for zone in zones])
 
     @abstractmethod
     def bounds(self, items: Indices, middle: Array, half: Array) -> tuple[Array, Array]:

@@ -10,9 +10,17 @@
 #include "viapoint/path/insertion.hpp"
 #include "viapoint/path/joint_path.hpp"
 #include "viapoint/path/task_curve.hpp"
+#include "viapoint/planning/motion_planner.hpp"
 #include "viapoint/program/motion_program.hpp"
 
 namespace viapoint {
+
+/// A point that a leg passes so near that it makes no corner.
+struct MergedPoint {
+  CornerOutcome outcome;
+  JointVector at;            ///< as it was told: joints (n,), or the tool point (3,) [m]
+  Eigen::Matrix3d rotation;  ///< of the tool there, where the leg holds it
+};
 
 /// One move from point to point, before corners and time.
 struct WantedLeg {
@@ -22,6 +30,7 @@ struct WantedLeg {
   std::shared_ptr<const TaskCurve> curve;  ///< of the tool, over the path's s; null in joint space
   Hold hold = Hold::kPose;                 ///< what of the curve is kept
   MoveOptions options;
+  std::vector<MergedPoint> merged;  ///< in order; of a straight leg alone
 };
 
 /// The legs of a program in order; none of a timed one, whose motion is what its points say. Walks
