@@ -1156,6 +1156,15 @@ class WantedLeg:
         "pose", "axis", "position" or "wrist".
         """
     @property
+    def merged(
+        self,
+    ) -> list[
+        tuple[Corner, numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]
+    ]:
+        """
+        The points that it passes without a corner: what became of the zone, joints (n,) or tool point (3,), and the tool's rotation (3, 3) as they were told.
+        """
+    @property
     def move(self) -> int:
         """
         Program step.
