@@ -6,6 +6,9 @@ target_compile_options(viapoint_compiler INTERFACE
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict -Wno-maybe-uninitialized>
   # Planner and controller must agree to the last bit: no fused multiply-add of the compiler's choosing.
   -ffp-contract=off)
+if(VIAPOINT_BUILD_FUZZ)  # by another compiler: warnings are the business of the main build
+  target_compile_options(viapoint_compiler INTERFACE -w)
+endif()
 if(VIAPOINT_SANITIZE)
   target_compile_options(viapoint_compiler INTERFACE
     -fsanitize=${VIAPOINT_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)

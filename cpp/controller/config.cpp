@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "kinematics/yaml_documents.hpp"
 #include "kinematics/yaml_map.hpp"
 #include "viapoint/core/atomic_file.hpp"
 #include "viapoint/core/error.hpp"
@@ -255,11 +256,11 @@ bool Config::is_loopback() const { return host.starts_with("127.") || host == "[
 
 Config config_from_yaml(const std::string& text, const std::string& source) {
   try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
-    if (documents.size() != 1) {
-      refuse_file(source, "holds " + std::to_string(documents.size()) + " documents, not one");
+    const YamlDocuments documents = load_documents(text);
+    if (documents.count != 1) {
+      refuse_file(source, "holds " + std::to_string(documents.count) + " documents, not one");
     }
-    Config config = read(YamlMap(YamlValue(documents.front(), source, "")));
+    Config config = read(YamlMap(YamlValue(documents.first, source, "")));
     resolve_names(config, std::filesystem::path(source).parent_path());
     return config;
   } catch (const YAML::Exception& error) {

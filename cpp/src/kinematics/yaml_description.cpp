@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "kinematics/yaml_documents.hpp"
 #include "kinematics/yaml_map.hpp"
 #include "viapoint/core/number_range.hpp"
 #include "viapoint/core/number_text.hpp"
@@ -354,12 +355,17 @@ class Reader {
 
 RobotDescription description_from_yaml(const std::string& text, const std::string& source) {
   try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
-    const YAML::Node root = documents.empty() ? YAML::Node() : documents.front();
-    if (documents.size() > 1) {
-      YamlValue(documents[1], source, "")
-          .refuse("a second YAML document begins; a file holds one robot",
-                  {"put each robot into a file of its own", "delete the \"---\" between them"});
+    const YamlDocuments documents = load_documents(text);
+    const YAML::Node& root = documents.first;
+    if (documents.count > 1) {
+      Problem problem;
+      problem.code = ErrorCode::kBadRobot;
+      problem.message = "a second YAML document begins; a file holds one robot";
+      problem.ways_out = {"put each robot into a file of its own",
+                          "delete the \"---\" between them"};
+      problem.file = source;
+      problem.line = documents.second_line;
+      throw MotionError(std::move(problem));
     }
     if (!root.IsDefined() || root.IsNull()) {
       Problem problem;
