@@ -183,9 +183,6 @@ class ProgramMaker {
       const unsigned draw = static_cast<unsigned>(random_());
       SetOutput output{static_cast<int>(draw % 64), random_() % 2 == 0};
       if ((draw >> 6) % 4 == 0) output.time = (draw >> 8) % 2 == 0 ? -0.05 : 0.02;
-      if ((draw >> 9) % 4 == 0 && robot_.has_kinematics()) {
-        output.distance = (draw >> 11) % 2 == 0 ? -1e-3 : 1e-3;
-      }
       script.add(output);
     }
   }
