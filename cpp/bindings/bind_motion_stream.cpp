@@ -1,4 +1,6 @@
 // A program that is run while it is told, on either loop.
+#include <pybind11/typing.h>
+
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -6,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "python_run.hpp"
 #include "run_handles.hpp"
 #include "viapoint/streaming/motion_stream.hpp"
 
@@ -20,14 +23,15 @@ class StreamHandle {
   template <typename Loop>
   StreamHandle(const HandleOf<Loop>& loop, const RobotHandle& robot, const MotionProgram& program,
                double margin)
-      : joints_(loop.joints),
-        stream_(
-            robot.robot, program,
+      : StreamHandle(
+            robot, program, margin,
             // An arm that is disconnected is not held by its streams.
             [to = std::weak_ptr<Loop>(loop.open())](std::shared_ptr<const Trajectory> first) {
               return HandleOf<Loop>{to.lock(), 0, {}}.open()->follow(std::move(first));
-            },
-            margin) {}
+            }) {}
+  StreamHandle(const RobotHandle& robot, const MotionProgram& program, double margin,
+               MotionStream::Follow follow)
+      : joints_(robot.robot->joints()), stream_(robot.robot, program, std::move(follow), margin) {}
 
   /// Takes the steps of `program` from `kept` on, and drops them there.
   void take(MotionProgram& program, size_t kept) {
@@ -107,6 +111,24 @@ std::unique_ptr<StreamHandle> make_stream(const HandleOf<Loop>& loop, const Robo
   return std::make_unique<StreamHandle>(loop, robot, program, margin);
 }
 
+/// @param follow begins a run with the motion it is given, and returns it
+std::unique_ptr<StreamHandle> make_stream_by(py::typing::Callable<py::object(MotionHandle)> follow,
+                                             const RobotHandle& robot, const MotionProgram& program,
+                                             double margin) {
+  // Its last copy may go where the GIL is not held.
+  const std::shared_ptr<py::function> kept(new py::function(std::move(follow)),
+                                           [](const py::function* spent) {
+                                             const py::gil_scoped_acquire gil;
+                                             delete spent;
+                                           });
+  return std::make_unique<StreamHandle>(
+      robot, program, margin, [kept](std::shared_ptr<const Trajectory> first) {
+        const py::gil_scoped_acquire gil;
+        return std::make_shared<PythonRun>(
+            (*kept)(MotionHandle{nullptr, std::move(first), {}, {}}));
+      });
+}
+
 }  // namespace
 
 void bind_motion_stream(py::module_& m) {
@@ -115,6 +137,8 @@ void bind_motion_stream(py::module_& m) {
            py::arg("program"), py::kw_only(), py::arg("margin"))
       .def(py::init(&make_stream<VirtualLoop>), py::arg("loop"), py::arg("robot"),
            py::arg("program"), py::kw_only(), py::arg("margin"))
+      .def(py::init(&make_stream_by), py::arg("follow"), py::arg("robot"), py::arg("program"),
+           py::kw_only(), py::arg("margin"))
       .def("take", &StreamHandle::take, py::arg("program"), py::arg("kept"),
            "Take the steps of a program from the number kept on, and drop them there.")
       .def("end", &StreamHandle::end, "No step follows.")

@@ -78,11 +78,31 @@ void require_this_version(const std::string& version) {
                     {"install the controller's version of the package where the script runs"});
 }
 
+void describe(Job& job, v1::RunState& reply) {
+  try {
+    // The log is complete only once a wait for the end comes back.
+    reply.set_ended(job.wait(0.0));
+  } catch (const MotionError& error) {
+    reply.set_ended(true);
+    *reply.mutable_fault() = wire_of(error.problem());
+  }
+  reply.set_state(to_string(job.state()));
+  reply.set_nominal_time(job.nominal_time());
+  reply.set_duration(job.duration());
+  reply.set_move(job.move());
+  reply.set_overruns(job.overruns());
+}
+
 }  // namespace
 
 ControllerService::ControllerService(ArmHost& host, RobotPtr robot, std::chrono::nanoseconds cycle,
-                                     std::chrono::nanoseconds heartbeat)
-    : host_(host), robot_(std::move(robot)), cycle_(cycle), heartbeat_(heartbeat) {}
+                                     std::chrono::nanoseconds heartbeat,
+                                     std::shared_ptr<std::atomic<std::uint64_t>> inputs)
+    : host_(host),
+      robot_(std::move(robot)),
+      cycle_(cycle),
+      heartbeat_(heartbeat),
+      inputs_(std::move(inputs)) {}
 
 grpc::Status ControllerService::GetRobot(Context* context, const v1::GetRobotRequest* /*request*/,
                                          v1::RobotReply* reply) {
@@ -102,21 +122,7 @@ grpc::Status ControllerService::GetState(Context* context, const v1::GetStateReq
 
 grpc::Status ControllerService::GetRun(Context* context, const v1::GetRunRequest* request,
                                        v1::RunState* reply) {
-  return answer(context, [&] {
-    const std::shared_ptr<Job> job = host_.job(request->run());
-    try {
-      // The log is complete only once a wait for the end comes back.
-      reply->set_ended(job->wait(0.0));
-    } catch (const MotionError& error) {
-      reply->set_ended(true);
-      *reply->mutable_fault() = wire_of(error.problem());
-    }
-    reply->set_state(to_string(job->state()));
-    reply->set_nominal_time(job->nominal_time());
-    reply->set_duration(job->duration());
-    reply->set_move(job->move());
-    reply->set_overruns(job->overruns());
-  });
+  return answer(context, [&] { describe(*host_.job(request->run()), *reply); });
 }
 
 grpc::Status ControllerService::GetReport(Context* context, const v1::GetReportRequest* request,
@@ -163,17 +169,72 @@ grpc::Status ControllerService::AddPieces(Context* context, const v1::AddPiecesR
   });
 }
 
+void ControllerService::require_robot(const std::string& fingerprint) const {
+  if (fingerprint == robot_->fingerprint()) return;
+  throw MotionError(ErrorCode::kBadArgument,
+                    "the motion was planned for another robot (fingerprint " +
+                        name_of(fingerprint) + "), the arm is \"" + robot_->name() + "\" (" +
+                        robot_->fingerprint() + ")",
+                    {"plan it for the robot of this arm: arm.robot"});
+}
+
 grpc::Status ControllerService::Run(Context* context, const v1::RunRequest* request,
                                     v1::RunReply* reply) {
   return answer(context, [&] {
-    if (request->fingerprint() != robot_->fingerprint()) {
-      throw MotionError(ErrorCode::kBadArgument,
-                        "the motion was planned for another robot (fingerprint " +
-                            name_of(request->fingerprint()) + "), the arm is \"" + robot_->name() +
-                            "\" (" + robot_->fingerprint() + ")",
-                        {"plan it for the robot of this arm: arm.robot"});
-    }
+    require_robot(request->fingerprint());
     reply->set_run(host_.run(request->token()));
+  });
+}
+
+grpc::Status ControllerService::Follow(Context* context, const v1::RunRequest* request,
+                                       v1::RunReply* reply) {
+  return answer(context, [&] {
+    require_robot(request->fingerprint());
+    reply->set_run(host_.follow(request->token()));
+  });
+}
+
+grpc::Status ControllerService::Lengthen(Context* context, const v1::LengthenRequest* request,
+                                         v1::LengthenReply* /*reply*/) {
+  return answer(context,
+                [&] { host_.lengthen(request->token(), request->run(), request->leave()); });
+}
+
+grpc::Status ControllerService::GetHandOver(Context* context, const v1::GetHandOverRequest* request,
+                                            v1::HandOver* reply) {
+  return answer(context, [&] {
+    *reply = wire_of(host_.hand_over(request->token(), request->run()));
+    describe(*host_.job(request->run()), *reply->mutable_run());
+  });
+}
+
+grpc::Status ControllerService::Close(Context* context, const v1::CloseRequest* request,
+                                      v1::CloseReply* /*reply*/) {
+  return answer(context, [&] { host_.close(request->token(), request->run()); });
+}
+
+grpc::Status ControllerService::OnInput(Context* context, const v1::OnInputRequest* request,
+                                        v1::OnInputReply* /*reply*/) {
+  return answer(context, [&] {
+    host_.on_input(request->token(), request->run(),
+                   reaction_of(request->input(), request->value(), request->wish()));
+  });
+}
+
+grpc::Status ControllerService::SetInputs(Context* context, const v1::SetInputsRequest* request,
+                                          v1::SetInputsReply* /*reply*/) {
+  return answer(context, [&] {
+    host_.require_control(request->token());
+    if (inputs_ == nullptr) {
+      throw MotionError(ErrorCode::kBusy, "the inputs are a real drive's",
+                        {"switch what is wired to them"});
+    }
+    std::uint64_t present = inputs_->load();
+    const auto switched = [&] {
+      return (present & ~request->mask()) | (request->values() & request->mask());
+    };
+    while (!inputs_->compare_exchange_weak(present, switched())) {
+    }
   });
 }
 

@@ -3,6 +3,7 @@
 #include <pthread.h>
 #include <spdlog/spdlog.h>
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -56,7 +57,8 @@ JointVector start_of(const Config& config, const RobotModel& robot) {
 }
 
 /// @param start where a simulated arm stands
-std::unique_ptr<Drive> drive_of(const Config& config, const JointVector& start) {
+std::unique_ptr<Drive> drive_of(const Config& config, const JointVector& start,
+                                const std::shared_ptr<std::atomic<std::uint64_t>>& inputs) {
   if (config.device) {
     UdpDriveOptions device = *config.device;
     device.joints = static_cast<int>(start.size());
@@ -64,7 +66,7 @@ std::unique_ptr<Drive> drive_of(const Config& config, const JointVector& start) 
   }
   SimulatedDriveOptions options = config.simulated;
   options.cycle = config.cycle;
-  return std::make_unique<SimulatedDrive>(start, nullptr, options);
+  return std::make_unique<SimulatedDrive>(start, inputs, options);
 }
 
 LoopOptions options_of(const Config& config, const RobotModel& robot) {
@@ -87,18 +89,20 @@ int serve(const std::string& config_path) {
   std::optional<RunArchive> archive;
   if (!config.logs.empty()) archive.emplace(config.logs);
 
+  const auto inputs = std::make_shared<std::atomic<std::uint64_t>>(0);
   ArmHost host(
       robot->limits(),
       [&](const JointVector& rest) {
-        return std::make_unique<ControllerLoop>(drive_of(config, rest.size() == 0 ? start : rest),
-                                                robot->limits(), options);
+        return std::make_unique<ControllerLoop>(
+            drive_of(config, rest.size() == 0 ? start : rest, inputs), robot->limits(), options);
       },
       config.heartbeat,
       [&](std::uint64_t number, const std::shared_ptr<Job>& job) {
         if (archive) archive->add(number, job);
       });
   for (const std::string& line : host.status().shortcomings) spdlog::warn("{}", line);
-  ControllerService service(host, robot, config.cycle, config.heartbeat);
+  ControllerService service(host, robot, config.cycle, config.heartbeat,
+                            config.device ? nullptr : inputs);
   const RemoteServer server(service, config);
   spdlog::info("\"{}\" is served at {}:{}{}", robot->name(), config.host, server.port(),
                config.tls ? ", to clients with a certificate" : "");

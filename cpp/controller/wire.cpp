@@ -1,6 +1,7 @@
 #include "controller/wire.hpp"
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <string>
 
@@ -111,6 +112,39 @@ Steering steering_of(v1::SteerRequest::Wish wish) {
     default:
       refuse("wish " + std::to_string(wish) + " is unknown");
   }
+}
+
+InputReaction reaction_of(int input, bool value, v1::SteerRequest::Wish wish) {
+  if (input < -1 || input >= InputReaction::kInputs) {
+    refuse("there is no input " + std::to_string(input) + "; inputs are 0 to " +
+           std::to_string(InputReaction::kInputs - 1));
+  }
+  InputReaction reaction;
+  reaction.input = static_cast<std::int16_t>(input);
+  reaction.value = value;
+  switch (wish) {
+    case v1::SteerRequest::PAUSE:
+      reaction.wish = Wish::kPause;
+      return reaction;
+    case v1::SteerRequest::RESUME:
+      reaction.wish = Wish::kRun;
+      return reaction;
+    case v1::SteerRequest::STOP:
+      reaction.wish = Wish::kStop;
+      return reaction;
+    default:
+      refuse("an input cannot make wish " + std::to_string(wish) + "; it pauses, resumes or stops");
+  }
+}
+
+v1::HandOver wire_of(const HandOver& hand_over) {
+  v1::HandOver out;
+  out.set_fate(hand_over.fate == LinkFate::kTaken     ? v1::HandOver::TAKEN
+               : hand_over.fate == LinkFate::kTooLate ? v1::HandOver::TOO_LATE
+                                                      : v1::HandOver::NOT_YET);
+  out.set_earliest_leave(hand_over.earliest_leave);
+  out.set_waited_cycles(hand_over.waited_cycles);
+  return out;
 }
 
 v1::Problem wire_of(const Problem& problem) {

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from types import TracebackType
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Protocol, cast
 
 from . import _core, _session
 from ._arguments import ArrayLike, Vector, integer, number, vector
@@ -14,7 +14,7 @@ from ._program import Program, motion_of
 from ._recording import Recording, record
 from ._robot import Robot
 from ._steps import INPUTS
-from ._stream import Stream
+from ._stream import Stream, StreamLoop
 from ._virtual import VirtualLoop
 from ._zone import ZoneLike
 from .errors import BadArgumentError, BusyError, StoppedError
@@ -28,7 +28,7 @@ _REACH = 1e-3
 
 
 class Loop(Protocol):
-    """What an arm needs of the controller: `_core.ControllerLoop`, or `VirtualLoop`."""
+    """What an arm needs of the controller: `_core.ControllerLoop`, `VirtualLoop`, `RemoteLoop`."""
 
     override: float
 
@@ -44,6 +44,9 @@ class Loop(Protocol):
     def observed(self) -> tuple[int, Vector, int, int]: ...
     @property
     def position(self) -> Vector: ...
+    @property
+    def inputs(self) -> int: ...
+    def set_inputs(self, changed: int, on: int) -> None: ...
     @property
     def busy(self) -> bool: ...
     @property
@@ -201,11 +204,11 @@ class Arm:
         Raises
         ------
         BadArgumentError
-            By the argument's name; or the arm is one that no stream can run on.
+            By the argument's name.
         BusyError
             A run or another stream is under way.
         """
-        loop = self._own_loop()
+        loop = self._loop
         limit = integer(ahead, "ahead", 3, 1000)
         if self._stream is not None and self._stream.ended:
             self._stream.close(stop=True)
@@ -217,7 +220,7 @@ class Arm:
             raise BusyError("A run is under way.", ways_out=["Wait for its end."])
         self._stream = Stream(
             self.robot,
-            loop,
+            cast("StreamLoop", loop),
             self._cycle,
             limit,
             {
@@ -287,8 +290,8 @@ class Arm:
         if isinstance(self._loop, (_core.ControllerLoop, VirtualLoop)):
             return self._loop
         raise BadArgumentError(
-            "The arm is driven by another process, which runs whole programs, and tells no inputs "
-            "and no hand.",
+            "The arm is driven by another process, where no hand guides "
+            "it and RTDE is served by the configuration.",
             ways_out=["Run a program, or connect to an arm of this process."],
         )
 
@@ -303,10 +306,10 @@ class Arm:
         Raises
         ------
         BadArgumentError
-            Another index, or an arm that is driven by another process.
+            Another index.
         """
         bit = integer(index, "index", 0, INPUTS - 1)
-        return bool(self._own_loop().inputs >> bit & 1)
+        return bool(self._loop.inputs >> bit & 1)
 
     def set_input(self, index: int, value: bool) -> None:
         """Switch a digital input of the simulated drive.
@@ -321,12 +324,14 @@ class Arm:
         Raises
         ------
         BadArgumentError
-            Another index, a value that is not a bool, or an arm that is driven by another process.
+            Another index, or a value that is not a bool.
+        BusyError
+            The drive is a real one.
         """
         bit = 1 << integer(index, "index", 0, INPUTS - 1)
         if not isinstance(value, bool):
             raise BadArgumentError(f"value is {value!r}; an input is True or False.")
-        self._own_loop().set_inputs(bit, bit if value else 0)
+        self._loop.set_inputs(bit, bit if value else 0)
 
     def serve_rtde(
         self, port: int = 30004, *, address: str = "127.0.0.1", other_machines: bool = False

@@ -28,6 +28,7 @@ class Execution(Protocol):
     def step(self) -> None: ...
     def backward(self) -> None: ...
     def stop(self, category: int) -> None: ...
+    def on_input(self, index: int, value: bool, action: str) -> None: ...
     @property
     def state(self) -> str: ...
     @property
@@ -256,19 +257,15 @@ class Job:
         Raises
         ------
         BadArgumentError
-            Another input or action, or an arm that is driven by another process.
+            Another input or action.
+        NotInControlError
+            Of an arm in another process: control was lost.
         """
         number = integer(index, "index", 0, INPUTS - 1)
         if not isinstance(value, bool):
             raise BadArgumentError(f"value is {value!r}; an input is True or False.")
         wished = choice(action, "action", ("pause", "resume", "stop"))
-        act = getattr(self._execution, "on_input", None)
-        if act is None:
-            raise BadArgumentError(
-                "The arm is driven by another process, where no run acts on inputs.",
-                ways_out=["Connect to an arm of this process."],
-            )
-        act(number, value, wished)
+        self._execution.on_input(number, value, wished)
 
     @property
     def log(self) -> RunLog:

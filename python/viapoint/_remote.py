@@ -2,33 +2,29 @@
 
 from __future__ import annotations
 
+import contextlib
 import getpass
 import os
 import socket
 import threading
 import time
-from typing import Any
+from collections.abc import Iterator
 
 import numpy as np
-import numpy.typing as npt
 
 from . import _core, _wire
 from ._arguments import Vector
+from ._remote_run import LOOK, RemoteExecution
+from ._remote_stream import RemoteOpenRun
 from ._wire import Message, Wire, message
 from .errors import NotInControlError, UnconnectedError
 
-_LOOK = 0.005
-"""A wait looks at the run so often [s]."""
 _BEATS = 4
 """So often an operator shows in each heartbeat that he is there."""
 _PART = 1 << 19
 """Pieces go in messages of about so many bytes."""
 _PROOF = 600.0
 """So long [s] the controller may take to prove a motion before it runs it."""
-_STEERING = {"pause": 1, "resume": 2, "step": 3, "backward": 4}
-_STOPS = {2: 5, 1: 6}
-"""Wish of a stop's category."""
-_RECORDS = 1000
 
 
 class Heart(threading.Thread):
@@ -63,133 +59,6 @@ class Heart(threading.Thread):
             self.join()
 
 
-class RemoteExecution:
-    """One run of the controller's: the execution of a `Job`."""
-
-    def __init__(self, loop: RemoteLoop, number: int) -> None:
-        self._loop = loop
-        self.number = number
-
-    def _look(self) -> Message:
-        return self._loop.call("GetRun", message("GetRunRequest", run=self.number), "RunState")
-
-    def wait(self, timeout: float) -> bool:
-        """Wait for the end, at most `timeout` [s].
-
-        Raises
-        ------
-        DriveFaultError
-            The drive failed.
-        InputTimeoutError
-            An input that the program waits for did not come in time.
-        NotInControlError
-            Control was lost; the run waits for what the next operator says.
-        """
-        deadline = time.monotonic() + timeout
-        while True:
-            look = self._look()
-            if look.HasField("fault"):
-                raise _wire.error_of(look.fault)
-            if look.ended:
-                return True
-            self._loop.require_kept_control()
-            left = deadline - time.monotonic()
-            if left <= 0.0:
-                return False
-            time.sleep(min(left, _LOOK))
-
-    def _steer(self, wish: int) -> None:
-        request = message("SteerRequest", token=self._loop.token, run=self.number, wish=wish)
-        self._loop.call("Steer", request, "SteerReply")
-
-    def pause(self) -> None:
-        """Come to rest on the path."""
-        self._steer(_STEERING["pause"])
-
-    def resume(self) -> None:
-        """Go on."""
-        self._steer(_STEERING["resume"])
-
-    def step(self) -> None:
-        """Run to the end of the move, then pause."""
-        self._steer(_STEERING["step"])
-
-    def backward(self) -> None:
-        """Go back along the path."""
-        self._steer(_STEERING["backward"])
-
-    def stop(self, category: int) -> None:
-        """Come to rest on the path and end."""
-        self._steer(_STOPS[category])
-
-    @property
-    def ended(self) -> bool:
-        """True when the arm rests, and the log is complete."""
-        return bool(self._look().ended)
-
-    @property
-    def state(self) -> str:
-        """As `Job.state`."""
-        return str(self._look().state)
-
-    @property
-    def nominal_time(self) -> float:
-        """How far along the motion [s]."""
-        return float(self._look().nominal_time)
-
-    @property
-    def duration(self) -> float:
-        """Of the motion [s]."""
-        return float(self._look().duration)
-
-    @property
-    def overruns(self) -> int:
-        """Cycles that woke a whole cycle late or more."""
-        return int(self._look().overruns)
-
-    @property
-    def move(self) -> int:
-        """The program's step under way."""
-        return int(self._look().move)
-
-    def log(self) -> _core.Log:
-        """Fetch every cycle so far, in parts."""
-        parts: list[Message] = []
-        start = 0
-        while True:
-            request = message("GetLogRequest", run=self.number, from_cycle=start, count=_RECORDS)
-            part = self._loop.call("GetLog", request, "LogPart")
-            if not part.cycle:
-                return _core.Log.of_columns(_columns(parts, self._loop.joints))
-            parts.append(part)
-            start = part.cycle[-1] + 1
-
-    def report(self) -> Message:
-        """Cycles, overruns, latencies and computing times so far."""
-        request = message("GetReportRequest", run=self.number)
-        return self._loop.call("GetReport", request, "RunReport")
-
-
-def _columns(parts: list[Message], joints: int) -> dict[str, npt.NDArray[Any]]:
-    """Put the parts of a log together, column by column."""
-    kinds: dict[str, type[np.generic]] = {
-        **dict.fromkeys(("cycle", "outputs"), np.uint64),
-        **dict.fromkeys(("stamp", "latency", "compute"), np.int64),
-        **dict.fromkeys(("nominal_time", "rate"), np.float64),
-        "move": np.int32,
-        "state": np.uint8,
-    }
-
-    def column(name: str, kind: type[np.generic]) -> npt.NDArray[Any]:
-        arrays = [np.array(getattr(part, name), dtype=kind) for part in parts]
-        return np.concatenate([np.zeros(0, dtype=kind), *arrays])
-
-    columns = {name: column(name, kind) for name, kind in kinds.items()}
-    for name in ("q", "qd", "qdd", "qddd", "measured"):
-        columns[name] = column(name, np.float64).reshape(-1, joints)
-    return columns
-
-
 class RemoteLoop:
     """What an arm needs of the controller, over the network. Threads: any.
 
@@ -210,6 +79,7 @@ class RemoteLoop:
         self._heart: Heart | None = None
         self._started: set[int] = set()
         self._sending = threading.Lock()
+        self.followed: RemoteOpenRun | None = None
         self.is_open = True
         if not watch:
             self._take_control()
@@ -239,17 +109,46 @@ class RemoteLoop:
 
     def run(self, motion: _core.PlannedMotion) -> RemoteExecution:
         """Send the motion, have it proven there, and begin it."""
+        return RemoteExecution(self, self._begin("Run", motion))
+
+    def follow(self, motion: _core.PlannedMotion) -> RemoteOpenRun:
+        """Do the same with a motion that gets longer while it runs."""
+        self.followed = RemoteOpenRun(self, self._begin("Follow", motion))
+        return self.followed
+
+    def _begin(self, method: str, motion: _core.PlannedMotion) -> int:
+        with self.sent(motion):
+            request = message("RunRequest", token=self.token, fingerprint=self.about.fingerprint)
+            number = int(self.call(method, request, "RunReply", patience=_PROOF).run)
+        self._started.add(number)
+        return number
+
+    @contextlib.contextmanager
+    def sent(self, motion: _core.PlannedMotion) -> Iterator[None]:
+        """Send the motion, and keep other threads from sending another until the block ends."""
         parts = _parts_of(_core.MotionPieces(motion))
         offset = 0
-        with self._sending:  # or another thread's motion would run in its place
+        with self._sending:
             for part in parts:
                 request = message("AddPiecesRequest", token=self.token, offset=offset, pieces=part)
                 self.call("AddPieces", request, "AddPiecesReply")
                 offset += len(part)
-            request = message("RunRequest", token=self.token, fingerprint=self.about.fingerprint)
-            number = self.call("Run", request, "RunReply", patience=_PROOF).run
-        self._started.add(number)
-        return RemoteExecution(self, number)
+            yield
+
+    @property
+    def has_control(self) -> bool:
+        """True until control is known to be lost; never for one that watches."""
+        return bool(self.token) and (self._heart is None or self._heart.loss is None)
+
+    @property
+    def inputs(self) -> int:
+        """What the drive last reported, bit i for input i."""
+        return int(self._state().inputs)
+
+    def set_inputs(self, changed: int, on: int) -> None:
+        """Switch inputs of a simulated drive."""
+        request = message("SetInputsRequest", token=self.token, mask=changed, values=on)
+        self.call("SetInputs", request, "SetInputsReply")
 
     def jog(self, velocity: Vector) -> None:
         """Turn the joints for the next 250 ms."""
@@ -344,7 +243,7 @@ class RemoteLoop:
                 run = RemoteExecution(self, number)
                 run.stop(2)
                 while not run.ended:
-                    time.sleep(_LOOK)
+                    time.sleep(LOOK)
             request = message("GiveUpControlRequest", token=self.token)
             self.call("GiveUpControl", request, "GiveUpControlReply")
         except (NotInControlError, UnconnectedError):

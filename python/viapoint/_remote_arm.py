@@ -9,7 +9,8 @@ from ._arm import Arm
 from ._drives import SimulatedDrive
 from ._job import Job
 from ._motion import Motion
-from ._remote import RemoteExecution, RemoteLoop
+from ._remote import RemoteLoop
+from ._remote_run import RemoteExecution
 from ._robot import Robot
 from ._run_log import RunLog
 from ._tls import TlsFiles

@@ -8,7 +8,7 @@ import time
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeAlias, cast
+from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, Protocol, TypeAlias, cast
 
 from . import _core
 from ._job import ENDED, Execution, Job
@@ -28,10 +28,21 @@ _PERIOD = 0.02
 """How often a stream looks whether more is due [s]."""
 _ROOM = 0.005
 """How often a step that has to wait looks for room [s]."""
-_MARGIN = 0.05
-"""What planning and handing over may take of the motion under way [s]."""
+_MARGIN, _FAR_MARGIN = 0.05, 0.1
+"""What planning and handing over may take of the motion under way [s], here and elsewhere."""
 
-_Loop: TypeAlias = _core.ControllerLoop | VirtualLoop
+
+class OtherLoop(Protocol):
+    """A loop in another process."""
+
+    followed: Execution | None
+    """The run that `follow` has begun last."""
+
+    @property
+    def follow(self) -> Callable[[_core.PlannedMotion], Execution]: ...
+
+
+StreamLoop: TypeAlias = _core.ControllerLoop | VirtualLoop | OtherLoop
 _Told = ParamSpec("_Told")
 
 
@@ -108,7 +119,7 @@ class Stream(Program):
     """True once steps are run as they are told."""
 
     def __init__(
-        self, robot: Robot, loop: _Loop, period: float, ahead: int, told: dict[str, Any]
+        self, robot: Robot, loop: StreamLoop, period: float, ahead: int, told: dict[str, Any]
     ) -> None:
         super().__init__(robot, **told)
         self._loop = loop
@@ -117,13 +128,14 @@ class Stream(Program):
         self._kept = len(self)
         self._told = self._kept
         self._tools: Tools = tools_of(self._core, robot)
-        is_virtual = isinstance(loop, VirtualLoop)
-        self._stream = _core.MotionStream(
-            loop.core if isinstance(loop, VirtualLoop) else loop,
-            robot._core,
-            self._core,
-            margin=5 * period if is_virtual else _MARGIN,
-        )
+        if isinstance(loop, VirtualLoop):
+            self._stream = _core.MotionStream(loop.core, robot._core, self._core, margin=5 * period)
+        elif isinstance(loop, _core.ControllerLoop):
+            self._stream = _core.MotionStream(loop, robot._core, self._core, margin=_MARGIN)
+        else:
+            self._stream = _core.MotionStream(
+                loop.follow, robot._core, self._core, margin=_FAR_MARGIN
+            )
         self._job: StreamJob | None = None
         self._trouble: BaseException | None = None
         self._closed = threading.Event()
@@ -172,10 +184,15 @@ class Stream(Program):
     def _begun(self) -> StreamJob | None:
         """The run, if the motion has begun."""
         if self._job is None and (core := self._stream.job) is not None:
-            loop = self._loop
-            execution = loop.executed(core) if isinstance(loop, VirtualLoop) else core
-            self._job = StreamJob(execution, self, self._period)
+            self._job = StreamJob(self._executed(core), self, self._period)
         return self._job
+
+    def _executed(self, core: _core.Job) -> Execution:
+        if isinstance(self._loop, VirtualLoop):
+            return self._loop.executed(core)
+        if isinstance(self._loop, _core.ControllerLoop) or self._loop.followed is None:
+            return core
+        return self._loop.followed
 
     @property
     def tools(self) -> Tools:

@@ -12,10 +12,14 @@ class _Virtual(_session.Session):
     virtual = True
 
 
-@pytest.fixture(params=["clock", "virtual"])
+@pytest.fixture(params=["clock", "virtual", "remote"])
 def arm(request):
-    """The same arm on the machine's clock and in virtual time."""
-    if request.param == "virtual":
+    """The same arm on the machine's clock, in virtual time, and in another process."""
+    if request.param == "remote":
+        served = request.getfixturevalue("serve")(robot="two_link", start=[0, 0])
+        with vp.connect(served.url) as connected:
+            yield connected
+    elif request.param == "virtual":
         with _session.use(_Virtual()), vp.connect("sim://two_link") as connected:
             yield connected
     else:

@@ -28,6 +28,17 @@ with vp.connect(sys.argv[1]) as arm:
     except vp.errors.NotInControlError as error:
         print("lost:", error.message, flush=True)
 """
+STREAM = """
+import itertools, sys
+import viapoint as vp
+with vp.connect(sys.argv[1]) as arm, arm.stream(scale=0.05) as stream:
+    home = arm.setpoint
+    for k in itertools.count():
+        stream.movej(home + 0.3 * (1 - k % 2))
+        if k == 3:
+            assert stream.job is not None
+            print("runs", flush=True)
+"""
 HEARTBEAT = 1.0
 """Long enough that a loaded machine loses no beat [s]."""
 
@@ -44,9 +55,9 @@ def client():
     """Start a script that runs a long move, and return it when the arm moves."""
     processes = []
 
-    def start(url):
+    def start(url, script=CLIENT):
         process = subprocess.Popen(
-            [sys.executable, "-c", CLIENT, url], stdout=subprocess.PIPE, text=True
+            [sys.executable, "-c", script, url], stdout=subprocess.PIPE, text=True
         )
         processes.append(process)
         assert process.stdout.readline() == "runs\n"
@@ -91,6 +102,25 @@ def test_a_script_that_is_killed_leaves_the_arm_at_rest_on_its_path(serve, clien
     limits = arm.robot.limits
     for rate, limit in ((log.qd, limits.velocity), (log.qdd, limits.acceleration)):
         assert (np.abs(rate) <= limit * (1 + 1e-6)).all()
+
+
+def test_the_stream_of_a_script_that_is_killed_ends_where_it_was_told_to(serve, client):
+    url = serve(heartbeat=HEARTBEAT).url
+    with vp.connect(url, watch=True) as watcher:
+        process = client(url, STREAM)
+        until(lambda: watcher.job.nominal_time > 0.1)
+        process.kill()
+        assert_waits_on_its_path(watcher)
+    with vp.connect(url) as arm:
+        job = arm.job
+        told = job.duration
+        arm.override = 1.0
+        job.resume()
+        assert job.wait(120)
+        assert job.state == "finished"
+        assert job.duration == told
+        ends = np.abs(arm.setpoint[:, None] - np.array([0.0, 0.3])).min(axis=1)
+        assert ends.max() < 1e-9
 
 
 def test_a_script_that_hangs_loses_control_and_is_told(serve, client):

@@ -23,11 +23,17 @@ def in_virtual_time():
         yield
 
 
-@pytest.fixture(params=["clock", "virtual"])
+@pytest.fixture(params=["clock", "virtual", "remote"])
 def arm(request):
-    """The same arm on the machine's clock and in virtual time."""
+    """The same arm on the machine's clock, in virtual time, and in another process."""
     robot = vp.joint_robot(3, velocity=3.0, acceleration=20.0, jerk=400.0)
-    if request.param == "virtual":
+    if request.param == "remote":
+        file = request.getfixturevalue("tmp_path") / "axes.yaml"
+        robot.save(file)
+        served = request.getfixturevalue("serve")(robot=str(file), start=[0, 0, 0])
+        with vp.connect(served.url) as connected:
+            yield connected
+    elif request.param == "virtual":
         with _session.use(_Virtual()), vp.connect("sim://axes", robot=robot) as connected:
             yield connected
     else:

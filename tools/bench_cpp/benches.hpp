@@ -35,7 +35,8 @@ void bench_tracking(int lines);
 /// them. @param programs in all
 void print_random_programs(int programs);
 /// Prints stops from random moments of random motions, each with limits and path, so that who reads
-/// them can look for a shorter one. @param stops to try on each of four arms, and under random limits; those that
+/// them can look for a shorter one. @param stops to try on each of four arms, and under random
+/// limits; those that
 ///   the motion's end forestalls are left out
 void print_stops(int stops);
 

@@ -96,8 +96,9 @@ std::shared_ptr<Job> ControllerLoop::run(std::shared_ptr<const Trajectory> traje
   return impl_->desk.run(std::move(trajectory), false, last_word);
 }
 
-std::shared_ptr<OpenJob> ControllerLoop::follow(std::shared_ptr<const Trajectory> first) {
-  return impl_->desk.run(std::move(first), true);
+std::shared_ptr<OpenJob> ControllerLoop::follow(std::shared_ptr<const Trajectory> first,
+                                                const std::function<void()>& last_word) {
+  return impl_->desk.run(std::move(first), true, last_word);
 }
 
 void ControllerLoop::jog(const JointVector& velocity) { impl_->desk.jog(velocity); }

@@ -8,6 +8,7 @@
 #include <thread>
 #include <utility>
 
+#include "remote/open_run.hpp"
 #include "viapoint/core/error.hpp"
 #include "viapoint/remote/control_seat.hpp"
 #include "viapoint/trajectory/trajectory.hpp"
@@ -22,7 +23,6 @@ using std::chrono::steady_clock;
 // thread of ordinary priority gets to run.
 constexpr double kSeatShare = 0.9, kLoopShare = 0.95;
 constexpr double kSlice = 0.05;  ///< of a wait for a run's end [s]
-
 std::chrono::nanoseconds share_of(double share, std::chrono::nanoseconds heartbeat) {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(share * heartbeat);
 }
@@ -30,6 +30,7 @@ std::chrono::nanoseconds share_of(double share, std::chrono::nanoseconds heartbe
 struct Run {
   std::uint64_t number = 0;
   std::shared_ptr<Job> job;
+  std::shared_ptr<OpenRun> open;  ///< null for one that is whole
 };
 
 bool has_ended(const Job& job) {
@@ -98,9 +99,11 @@ struct ArmHost::Impl {
     pending.clear();
     if (!runs.empty()) runs.back().job->pause();
     const std::shared_ptr<ControllerLoop> present = loop;
+    const std::shared_ptr<OpenRun> open = runs.empty() ? nullptr : runs.back().open;
     if (present != nullptr) present->keep_alive(std::chrono::nanoseconds::zero());
     lock.unlock();
     if (present != nullptr) end_jog(*present);
+    if (open != nullptr) open->close();
     lock.lock();
   }
 
@@ -123,6 +126,44 @@ struct ArmHost::Impl {
                                                    " is not known; the last one is " +
                                                    std::to_string(last_run) + ", and the newest " +
                                                    std::to_string(kRunsKept) + " are kept");
+  }
+
+  /// @pre not locked
+  [[nodiscard]] std::shared_ptr<OpenRun> open_run(const std::string& token,
+                                                  std::uint64_t number) const {
+    const std::lock_guard lock(mutex);
+    seat.require(token);
+    if (std::shared_ptr<OpenRun> open = find(number).open) return open;
+    throw MotionError(ErrorCode::kBadArgument,
+                      "run " + std::to_string(number) + " is of a motion that was whole",
+                      {"begin a stream"});
+  }
+
+  /// The motion collected, which nobody runs but the caller. @pre not locked
+  [[nodiscard]] std::shared_ptr<const Trajectory> take_pending() {
+    std::unique_lock lock(mutex);
+    std::vector<TrajectoryPiece> pieces = std::exchange(pending, {});
+    lock.unlock();
+    return std::make_shared<const Trajectory>(std::move(pieces), limits);
+  }
+
+  /// Begins what is collected by `start`, given the loop, the motion, and what it has to call last.
+  /// @pre not locked: long motions take a while to prove; beats and looks are answered meanwhile
+  template <typename Start>
+  [[nodiscard]] std::uint64_t begin(const std::string& token, const Start& start) {
+    std::unique_lock lock(mutex);
+    const std::shared_ptr<ControllerLoop> present = working_loop(token);
+    lock.unlock();
+    Run run = start(*present, take_pending(), [&] {
+      // Control may have been lost meanwhile, and be another's: then nothing begins.
+      lock.lock();
+      static_cast<void>(working_loop(token));
+    });
+    run.number = ++last_run;
+    if (tell_run) tell_run(run.number, run.job);
+    runs.push_back(std::move(run));
+    if (runs.size() > kRunsKept) runs.pop_front();
+    return last_run;
   }
 
   /// A loop that has failed, or whose drive was released, makes room for a new one.
@@ -233,23 +274,29 @@ void ArmHost::add_pieces(const std::string& token, std::size_t offset,
 }
 
 std::uint64_t ArmHost::run(const std::string& token) {
-  std::unique_lock lock(impl_->mutex);
-  const std::shared_ptr<ControllerLoop> loop = impl_->working_loop(token);
-  std::vector<TrajectoryPiece> pieces = std::exchange(impl_->pending, {});
-  lock.unlock();
-
-  // Long motions take a while to prove; beats and looks are answered meanwhile.
-  const auto trajectory = std::make_shared<const Trajectory>(std::move(pieces), impl_->limits);
-  const std::shared_ptr<Job> job = loop->run(trajectory, [&] {
-    // Control may have been lost meanwhile, and be another's: then nothing begins.
-    lock.lock();
-    static_cast<void>(impl_->working_loop(token));
+  return impl_->begin(token, [](ControllerLoop& loop, auto motion, const auto& last_word) {
+    return Run{0, loop.run(std::move(motion), last_word), nullptr};
   });
-  const std::uint64_t number = ++impl_->last_run;
-  impl_->runs.push_back({number, job});
-  if (impl_->tell_run) impl_->tell_run(number, job);
-  if (impl_->runs.size() > kRunsKept) impl_->runs.pop_front();
-  return number;
+}
+
+std::uint64_t ArmHost::follow(const std::string& token) {
+  return impl_->begin(token, [](ControllerLoop& loop, auto motion, const auto& last_word) {
+    const std::shared_ptr<OpenJob> job = loop.follow(std::move(motion), last_word);
+    return Run{0, job, std::make_shared<OpenRun>(job)};
+  });
+}
+
+void ArmHost::lengthen(const std::string& token, std::uint64_t run, double leave) {
+  const std::shared_ptr<OpenRun> open = impl_->open_run(token, run);
+  open->lengthen(impl_->take_pending(), leave);
+}
+
+void ArmHost::close(const std::string& token, std::uint64_t run) {
+  impl_->open_run(token, run)->close();
+}
+
+HandOver ArmHost::hand_over(const std::string& token, std::uint64_t run) {
+  return impl_->open_run(token, run)->look();
 }
 
 void ArmHost::steer(const std::string& token, std::uint64_t run, Steering steering) {
@@ -272,6 +319,17 @@ void ArmHost::steer(const std::string& token, std::uint64_t run, Steering steeri
       impl_->is_release_wished = impl_->is_release_wished || !has_ended(job);
       return job.stop(StopCategory::kRelease);
   }
+}
+
+void ArmHost::on_input(const std::string& token, std::uint64_t run, const InputReaction& reaction) {
+  const std::lock_guard lock(impl_->mutex);
+  impl_->seat.require(token);
+  impl_->find(run).job->on_input(reaction);
+}
+
+void ArmHost::require_control(const std::string& token) const {
+  const std::lock_guard lock(impl_->mutex);
+  impl_->seat.require(token);
 }
 
 void ArmHost::set_override(const std::string& token, double share) {

@@ -1545,6 +1545,15 @@ class MotionStream:
         *,
         margin: typing.SupportsFloat | typing.SupportsIndex,
     ) -> None: ...
+    @typing.overload
+    def __init__(
+        self,
+        follow: collections.abc.Callable[[PlannedMotion], typing.Any],
+        robot: RobotModel,
+        program: MotionProgram,
+        *,
+        margin: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> None: ...
     def end(self) -> None:
         """
         No step follows.

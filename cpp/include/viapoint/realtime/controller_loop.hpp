@@ -142,7 +142,8 @@ class ControllerLoop {
   [[nodiscard]] std::shared_ptr<Job> run(std::shared_ptr<const Trajectory> trajectory,
                                          const std::function<void()>& last_word = {});
   /// The same with a motion that gets longer while it runs, of which this is the beginning.
-  [[nodiscard]] std::shared_ptr<OpenJob> follow(std::shared_ptr<const Trajectory> first);
+  [[nodiscard]] std::shared_ptr<OpenJob> follow(std::shared_ptr<const Trajectory> first,
+                                                const std::function<void()>& last_word = {});
   /// Hold-to-run: joint velocities (n,) [rad/s or m/s] for the next 250 ms; calling again renews
   /// them, zero or silence brings the arm to rest within its limits. Joints stop at their position
   /// limits by themselves, the arm before its coupled limits. Refused: kBusy while a run is under

@@ -12,7 +12,9 @@
 
 #include "viapoint/core/joint_limits.hpp"
 #include "viapoint/realtime/controller_loop.hpp"
+#include "viapoint/realtime/input_reaction.hpp"
 #include "viapoint/realtime/loop_cycle.hpp"
+#include "viapoint/remote/hand_over.hpp"
 #include "viapoint/trajectory/trajectory_piece.hpp"
 
 namespace viapoint {
@@ -77,8 +79,23 @@ class ArmHost {
   /// Proves the motion collected and runs it; returns the run's number, from 1.
   /// @throws MotionError of ControllerLoop::run, with the certificate's first problem
   [[nodiscard]] std::uint64_t run(const std::string& token);
+  /// The same of a motion that gets longer while it runs, of which the one collected is the
+  /// beginning. When its operator is lost the run takes nothing more: it can be resumed to the end
+  /// of what there is.
+  [[nodiscard]] std::uint64_t follow(const std::string& token);
+  /// Proves the motion collected, and hands it over as OpenJob::lengthen.
+  /// @throws MotionError(kBadArgument) for a run that is not kept, or that follow() did not begin
+  void lengthen(const std::string& token, std::uint64_t run, double leave);
+  /// As OpenJob::close. @throws MotionError as lengthen()
+  void close(const std::string& token, std::uint64_t run);
+  /// @throws MotionError as lengthen()
+  [[nodiscard]] HandOver hand_over(const std::string& token, std::uint64_t run);
   /// @throws MotionError(kBadArgument) for a run that is not kept
   void steer(const std::string& token, std::uint64_t run, Steering steering);
+  /// As Job::on_input. @throws MotionError of that, and as steer()
+  void on_input(const std::string& token, std::uint64_t run, const InputReaction& reaction);
+  /// Nothing but whether the token has control.
+  void require_control(const std::string& token) const;
   /// @throws MotionError of ControllerLoop::set_override
   void set_override(const std::string& token, double share);
   /// @throws MotionError of ControllerLoop::jog

@@ -1,0 +1,165 @@
+"""A run of a controller in another process."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core, _wire
+from ._wire import Message, message
+
+if TYPE_CHECKING:
+    from ._remote import RemoteLoop
+
+LOOK = 0.005
+"""A wait looks at the run so often [s]."""
+_STEERING = {"pause": 1, "resume": 2, "step": 3, "backward": 4}
+_REACTIONS = {"pause": 1, "resume": 2, "stop": 5}
+_STOPS = {2: 5, 1: 6}
+"""Wish of a stop's category."""
+_RECORDS = 1000
+
+
+class RemoteExecution:
+    """One run of the controller's: the execution of a `Job`."""
+
+    def __init__(self, loop: RemoteLoop, number: int) -> None:
+        self._loop = loop
+        self.number = number
+
+    def _look(self) -> Message:
+        return self._loop.call("GetRun", message("GetRunRequest", run=self.number), "RunState")
+
+    def wait(self, timeout: float) -> bool:
+        """Wait for the end, at most `timeout` [s].
+
+        Raises
+        ------
+        DriveFaultError
+            The drive failed.
+        InputTimeoutError
+            An input that the program waits for did not come in time.
+        NotInControlError
+            Control was lost; the run waits for what the next operator says.
+        """
+        deadline = time.monotonic() + timeout
+        while True:
+            look = self._look()
+            if look.HasField("fault"):
+                raise _wire.error_of(look.fault)
+            if look.ended:
+                return True
+            self._loop.require_kept_control()
+            left = deadline - time.monotonic()
+            if left <= 0.0:
+                return False
+            time.sleep(min(left, LOOK))
+
+    def _steer(self, wish: int) -> None:
+        request = message("SteerRequest", token=self._loop.token, run=self.number, wish=wish)
+        self._loop.call("Steer", request, "SteerReply")
+
+    def pause(self) -> None:
+        """Come to rest on the path."""
+        self._steer(_STEERING["pause"])
+
+    def resume(self) -> None:
+        """Go on."""
+        self._steer(_STEERING["resume"])
+
+    def step(self) -> None:
+        """Run to the end of the move, then pause."""
+        self._steer(_STEERING["step"])
+
+    def backward(self) -> None:
+        """Go back along the path."""
+        self._steer(_STEERING["backward"])
+
+    def stop(self, category: int) -> None:
+        """Come to rest on the path and end."""
+        self._steer(_STOPS[category])
+
+    def on_input(self, index: int, value: bool, action: str) -> None:
+        """Act on an input, in the cycle after it is so; none for -1."""
+        self._loop.call(
+            "OnInput",
+            message(
+                "OnInputRequest",
+                token=self._loop.token,
+                run=self.number,
+                input=index,
+                value=value,
+                wish=_REACTIONS[action],
+            ),
+            "OnInputReply",
+        )
+
+    @property
+    def ended(self) -> bool:
+        """True when the arm rests, and the log is complete."""
+        return bool(self._look().ended)
+
+    @property
+    def state(self) -> str:
+        """As `Job.state`."""
+        return str(self._look().state)
+
+    @property
+    def nominal_time(self) -> float:
+        """How far along the motion [s]."""
+        return float(self._look().nominal_time)
+
+    @property
+    def duration(self) -> float:
+        """Of the motion [s]."""
+        return float(self._look().duration)
+
+    @property
+    def overruns(self) -> int:
+        """Cycles that woke a whole cycle late or more."""
+        return int(self._look().overruns)
+
+    @property
+    def move(self) -> int:
+        """The program's step under way."""
+        return int(self._look().move)
+
+    def log(self) -> _core.Log:
+        """Fetch every cycle so far, in parts."""
+        parts: list[Message] = []
+        start = 0
+        while True:
+            request = message("GetLogRequest", run=self.number, from_cycle=start, count=_RECORDS)
+            part = self._loop.call("GetLog", request, "LogPart")
+            if not part.cycle:
+                return _core.Log.of_columns(_columns(parts, self._loop.joints))
+            parts.append(part)
+            start = part.cycle[-1] + 1
+
+    def report(self) -> Message:
+        """Cycles, overruns, latencies and computing times so far."""
+        request = message("GetReportRequest", run=self.number)
+        return self._loop.call("GetReport", request, "RunReport")
+
+
+def _columns(parts: list[Message], joints: int) -> dict[str, npt.NDArray[Any]]:
+    """Put the parts of a log together, column by column."""
+    kinds: dict[str, type[np.generic]] = {
+        **dict.fromkeys(("cycle", "outputs"), np.uint64),
+        **dict.fromkeys(("stamp", "latency", "compute"), np.int64),
+        **dict.fromkeys(("nominal_time", "rate"), np.float64),
+        "move": np.int32,
+        "state": np.uint8,
+    }
+
+    def column(name: str, kind: type[np.generic]) -> npt.NDArray[Any]:
+        arrays = [np.array(getattr(part, name), dtype=kind) for part in parts]
+        return np.concatenate([np.zeros(0, dtype=kind), *arrays])
+
+    columns = {name: column(name, kind) for name, kind in kinds.items()}
+    for name in ("q", "qd", "qdd", "qddd", "measured"):
+        columns[name] = column(name, np.float64).reshape(-1, joints)
+    return columns
