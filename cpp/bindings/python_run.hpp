@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -38,6 +39,8 @@ class PythonRun final : public OpenJob {
   [[nodiscard]] double duration() const override { return look<double>("duration"); }
   [[nodiscard]] std::uint64_t overruns() const override { return look<std::uint64_t>("overruns"); }
   [[nodiscard]] int move() const override { return look<int>("move"); }
+  /// Of a run in another process that is not told.
+  [[nodiscard]] std::optional<InputWait> awaited() const override { return std::nullopt; }
   [[nodiscard]] std::vector<LogRecord> log() const override;
   [[nodiscard]] std::vector<LogRecord> log(std::uint64_t from, std::size_t count) const override;
   [[nodiscard]] RunReport report() const override;

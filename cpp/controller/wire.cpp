@@ -115,9 +115,9 @@ Steering steering_of(v1::SteerRequest::Wish wish) {
 }
 
 InputReaction reaction_of(int input, bool value, v1::SteerRequest::Wish wish) {
-  if (input < -1 || input >= InputReaction::kInputs) {
+  if (input < -1 || input >= kDigitalInputs) {
     refuse("there is no input " + std::to_string(input) + "; inputs are 0 to " +
-           std::to_string(InputReaction::kInputs - 1));
+           std::to_string(kDigitalInputs - 1));
   }
   InputReaction reaction;
   reaction.input = static_cast<std::int16_t>(input);
