@@ -123,15 +123,23 @@ std::unique_ptr<StreamHandle> make_stream_by(py::typing::Callable<py::object(Mot
                                            });
   return std::make_unique<StreamHandle>(
       robot, program, margin, [kept](std::shared_ptr<const Trajectory> first) {
-        const py::gil_scoped_acquire gil;
-        return std::make_shared<PythonRun>(
-            (*kept)(MotionHandle{nullptr, std::move(first), {}, {}}));
+        return in_python([&] {
+          return std::make_shared<PythonRun>(
+              (*kept)(MotionHandle{nullptr, std::move(first), {}, {}}));
+        });
       });
 }
 
 }  // namespace
 
 void bind_motion_stream(py::module_& m) {
+  py::register_exception_translator([](std::exception_ptr thrown) {
+    try {
+      if (thrown) std::rethrow_exception(thrown);
+    } catch (const PythonError& error) {
+      error.raise();
+    }
+  });
   py::class_<StreamHandle>(m, "MotionStream", "Runs a program while it is told. Threads: any.")
       .def(py::init(&make_stream<ControllerLoop>), py::arg("loop"), py::arg("robot"),
            py::arg("program"), py::kw_only(), py::arg("margin"))

@@ -12,6 +12,17 @@ const char* action_of(Wish wish) {
 
 }  // namespace
 
+PythonError::PythonError(const py::error_already_set& error)
+    : std::runtime_error("an error of Python's"),
+      error_(new py::object(error.value()), [](const py::object* spent) {
+        const py::gil_scoped_acquire gil;
+        delete spent;
+      }) {}
+
+void PythonError::raise() const {
+  PyErr_SetObject(py::type::handle_of(*error_).ptr(), error_->ptr());
+}
+
 void PythonRun::on_input(const InputReaction& reaction) {
   tell("on_input", static_cast<int>(reaction.input), reaction.value, action_of(reaction.wish));
 }
@@ -27,8 +38,7 @@ RunState PythonRun::state() const {
 }
 
 std::vector<LogRecord> PythonRun::log() const {
-  const py::gil_scoped_acquire gil;
-  return run_.attr("log")().cast<LogHandle>().records;
+  return in_python([&] { return run_.attr("log")().cast<LogHandle>().records; });
 }
 
 std::vector<LogRecord> PythonRun::log(std::uint64_t from, std::size_t count) const {
@@ -39,29 +49,29 @@ std::vector<LogRecord> PythonRun::log(std::uint64_t from, std::size_t count) con
 }
 
 RunReport PythonRun::report() const {
-  const py::gil_scoped_acquire gil;
-  const py::object told = run_.attr("report")();
-  const auto number = [&](const char* name) { return told.attr(name).cast<double>(); };
-  const auto count = [&](const char* name) { return told.attr(name).cast<std::uint64_t>(); };
-  RunReport report;
-  report.cycles = count("cycles");
-  report.overruns = count("overruns");
-  report.latency_p50 = number("latency_p50");
-  report.latency_p99 = number("latency_p99");
-  report.latency_max = number("latency_max");
-  report.compute_p50 = number("compute_p50");
-  report.compute_p99 = number("compute_p99");
-  report.compute_max = number("compute_max");
-  report.wall_time = number("wall_time");
-  report.missed_cycles = count("missed_cycles");
-  report.lost_records = count("lost_records");
-  report.rested_cycles = count("rested_cycles");
-  return report;
+  return in_python([&] {
+    const py::object told = run_.attr("report")();
+    const auto number = [&](const char* name) { return told.attr(name).cast<double>(); };
+    const auto count = [&](const char* name) { return told.attr(name).cast<std::uint64_t>(); };
+    RunReport report;
+    report.cycles = count("cycles");
+    report.overruns = count("overruns");
+    report.latency_p50 = number("latency_p50");
+    report.latency_p99 = number("latency_p99");
+    report.latency_max = number("latency_max");
+    report.compute_p50 = number("compute_p50");
+    report.compute_p99 = number("compute_p99");
+    report.compute_max = number("compute_max");
+    report.wall_time = number("wall_time");
+    report.missed_cycles = count("missed_cycles");
+    report.lost_records = count("lost_records");
+    report.rested_cycles = count("rested_cycles");
+    return report;
+  });
 }
 
 void PythonRun::lengthen(std::shared_ptr<const Trajectory> next, double leave) {
-  const py::gil_scoped_acquire gil;
-  run_.attr("lengthen")(MotionHandle{nullptr, std::move(next), {}, {}}, leave);
+  in_python([&] { run_.attr("lengthen")(MotionHandle{nullptr, std::move(next), {}, {}}, leave); });
 }
 
 LinkFate PythonRun::fate() {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -13,6 +14,29 @@
 #include "viapoint/realtime/controller_loop.hpp"
 
 namespace viapoint::python {
+
+/// What Python raised, to be thrown as often as need be: pybind11's own can be raised but once.
+class PythonError final : public std::runtime_error {
+ public:
+  /// @pre the GIL is held
+  explicit PythonError(const py::error_already_set& error);
+  /// Raises it in Python again. @pre the GIL is held
+  void raise() const;
+
+ private:
+  std::shared_ptr<py::object> error_;
+};
+
+/// Calls into Python with the GIL held. @throws PythonError
+template <typename Call>
+auto in_python(const Call& call) {
+  const py::gil_scoped_acquire gil;
+  try {
+    return call();
+  } catch (const py::error_already_set& error) {
+    throw PythonError(error);
+  }
+}
 
 /// Asks a Python object for everything, by the names of `OpenExecution` in _stream.py. It takes the
 /// GIL for as long as each call lasts, so that callers may hold it or not. What Python raises goes
@@ -55,18 +79,15 @@ class PythonRun final : public OpenJob {
  private:
   template <typename... Args>
   void tell(const char* method, Args... args) const {
-    const py::gil_scoped_acquire gil;
-    run_.attr(method)(args...);
+    in_python([&] { run_.attr(method)(args...); });
   }
   template <typename T, typename... Args>
   [[nodiscard]] T ask(const char* method, Args... args) const {
-    const py::gil_scoped_acquire gil;
-    return run_.attr(method)(args...).template cast<T>();
+    return in_python([&] { return run_.attr(method)(args...).template cast<T>(); });
   }
   template <typename T>
   [[nodiscard]] T look(const char* attribute) const {
-    const py::gil_scoped_acquire gil;
-    return run_.attr(attribute).template cast<T>();
+    return in_python([&] { return run_.attr(attribute).template cast<T>(); });
   }
 
   py::object run_;

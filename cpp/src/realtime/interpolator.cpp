@@ -84,6 +84,7 @@ LinkFate Interpolator::lengthen(const MotionLink& link) noexcept VIAPOINT_NONBLO
   may_go_back_ = link.begins_at_rest;
   left_out_ += link.shift;
   now_.tau -= link.shift;
+  shown_.tau -= link.shift;  // which a jog leaves as it is
   anchor_ -= link.shift;
   fresh_ -= link.shift;
   farthest_piece_ -= link.dropped;

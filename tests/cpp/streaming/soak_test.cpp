@@ -159,7 +159,7 @@ class Shift {
     };
     for (const Step& step : program.steps) {
       // Most come in time, some late.
-      for (int k = chance(0.1) ? 400 : whole(100); k > 0; --k) pass(true);
+      for (int k = chance(0.15) ? 500 : whole(100); k > 0; --k) pass(true);
       stream.add(step);
     }
     stream.end();
