@@ -115,12 +115,7 @@ std::unique_ptr<StreamHandle> make_stream(const HandleOf<Loop>& loop, const Robo
 std::unique_ptr<StreamHandle> make_stream_by(py::typing::Callable<py::object(MotionHandle)> follow,
                                              const RobotHandle& robot, const MotionProgram& program,
                                              double margin) {
-  // Its last copy may go where the GIL is not held.
-  const std::shared_ptr<py::function> kept(new py::function(std::move(follow)),
-                                           [](const py::function* spent) {
-                                             const py::gil_scoped_acquire gil;
-                                             delete spent;
-                                           });
+  const std::shared_ptr<py::object> kept = held(std::move(follow));
   return std::make_unique<StreamHandle>(
       robot, program, margin, [kept](std::shared_ptr<const Trajectory> first) {
         return in_python([&] {
@@ -133,6 +128,7 @@ std::unique_ptr<StreamHandle> make_stream_by(py::typing::Callable<py::object(Mot
 }  // namespace
 
 void bind_motion_stream(py::module_& m) {
+  // NOLINTNEXTLINE(performance-unnecessary-value-param): that is how translators are called
   py::register_exception_translator([](std::exception_ptr thrown) {
     try {
       if (thrown) std::rethrow_exception(thrown);

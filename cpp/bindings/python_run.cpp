@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 namespace viapoint::python {
 namespace {
@@ -12,12 +13,15 @@ const char* action_of(Wish wish) {
 
 }  // namespace
 
+std::shared_ptr<py::object> held(py::object object) {
+  return {new py::object(std::move(object)), [](const py::object* spent) {
+            const py::gil_scoped_acquire gil;
+            delete spent;
+          }};
+}
+
 PythonError::PythonError(const py::error_already_set& error)
-    : std::runtime_error("an error of Python's"),
-      error_(new py::object(error.value()), [](const py::object* spent) {
-        const py::gil_scoped_acquire gil;
-        delete spent;
-      }) {}
+    : std::runtime_error("an error of Python's"), error_(held(error.value())) {}
 
 void PythonError::raise() const {
   PyErr_SetObject(py::type::handle_of(*error_).ptr(), error_->ptr());
@@ -38,7 +42,7 @@ RunState PythonRun::state() const {
 }
 
 std::vector<LogRecord> PythonRun::log() const {
-  return in_python([&] { return run_.attr("log")().cast<LogHandle>().records; });
+  return in_python([&] { return run_->attr("log")().cast<LogHandle>().records; });
 }
 
 std::vector<LogRecord> PythonRun::log(std::uint64_t from, std::size_t count) const {
@@ -50,7 +54,7 @@ std::vector<LogRecord> PythonRun::log(std::uint64_t from, std::size_t count) con
 
 RunReport PythonRun::report() const {
   return in_python([&] {
-    const py::object told = run_.attr("report")();
+    const py::object told = run_->attr("report")();
     const auto number = [&](const char* name) { return told.attr(name).cast<double>(); };
     const auto count = [&](const char* name) { return told.attr(name).cast<std::uint64_t>(); };
     RunReport report;
@@ -71,7 +75,7 @@ RunReport PythonRun::report() const {
 }
 
 void PythonRun::lengthen(std::shared_ptr<const Trajectory> next, double leave) {
-  in_python([&] { run_.attr("lengthen")(MotionHandle{nullptr, std::move(next), {}, {}}, leave); });
+  in_python([&] { run_->attr("lengthen")(MotionHandle{nullptr, std::move(next), {}, {}}, leave); });
 }
 
 LinkFate PythonRun::fate() {

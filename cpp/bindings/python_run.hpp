@@ -15,6 +15,9 @@
 
 namespace viapoint::python {
 
+/// Keeps a Python object whose last owner may let go of it without the GIL. @pre the GIL is held
+[[nodiscard]] std::shared_ptr<py::object> held(py::object object);
+
 /// What Python raised, to be thrown as often as need be: pybind11's own can be raised but once.
 class PythonError final : public std::runtime_error {
  public:
@@ -43,13 +46,8 @@ auto in_python(const Call& call) {
 /// on up.
 class PythonRun final : public OpenJob {
  public:
-  explicit PythonRun(py::object run) : run_(std::move(run)) {}
-  ~PythonRun() override {
-    const py::gil_scoped_acquire gil;
-    run_ = py::object();
-  }
-  PythonRun(const PythonRun&) = delete;
-  PythonRun& operator=(const PythonRun&) = delete;
+  /// @pre the GIL is held
+  explicit PythonRun(py::object run) : run_(held(std::move(run))) {}
 
   bool wait(double timeout) override { return ask<bool>("wait", timeout); }
   void pause() override { tell("pause"); }
@@ -79,18 +77,18 @@ class PythonRun final : public OpenJob {
  private:
   template <typename... Args>
   void tell(const char* method, Args... args) const {
-    in_python([&] { run_.attr(method)(args...); });
+    in_python([&] { run_->attr(method)(args...); });
   }
   template <typename T, typename... Args>
   [[nodiscard]] T ask(const char* method, Args... args) const {
-    return in_python([&] { return run_.attr(method)(args...).template cast<T>(); });
+    return in_python([&] { return run_->attr(method)(args...).template cast<T>(); });
   }
   template <typename T>
   [[nodiscard]] T look(const char* attribute) const {
-    return in_python([&] { return run_.attr(attribute).template cast<T>(); });
+    return in_python([&] { return run_->attr(attribute).template cast<T>(); });
   }
 
-  py::object run_;
+  std::shared_ptr<py::object> run_;
 };
 
 }  // namespace viapoint::python

@@ -19,8 +19,8 @@ void use(const RobotDescription& description) {
     const JointVector q = 0.5 * (robot->limits().position_min.cwiseMax(-1.0) +
                                  robot->limits().position_max.cwiseMin(1.0));
     promise(robot->forward().pose(q).matrix().allFinite(), "a robot whose tool is nowhere");
-  } catch (const MotionError&) {
-    // A description may be well formed and still no arm.
+  } catch (const MotionError& error) {  // well formed, and still no arm
+    promise(!error.problem().message.empty(), "a refusal without words");
   }
 }
 

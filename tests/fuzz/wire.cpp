@@ -54,7 +54,7 @@ template <typename Message>
 
 void wire(std::string_view bytes) {
   if (bytes.empty()) return;
-  const int kind = bytes.front();
+  const char kind = bytes.front();
   bytes.remove_prefix(1);
   bool is_one = false;
   const google::protobuf::LogSilencer quiet;  // it tells of every text that is none
@@ -72,8 +72,8 @@ void wire(std::string_view bytes) {
       const auto pieces = parsed<v1::AddPiecesRequest>(bytes, is_one);
       if (is_one) run(pieces);
     }
-  } catch (const MotionError&) {
-    // Refused by name.
+  } catch (const MotionError& error) {
+    promise(!error.problem().message.empty(), "a refusal without words");
   }
 }
 

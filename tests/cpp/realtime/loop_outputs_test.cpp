@@ -31,7 +31,7 @@ std::shared_ptr<const Trajectory> switching_motion() {
 }
 
 class LoopOutputs : public testing::Test {
- protected:
+ public:
   /// True once the loop has sent these outputs.
   bool sent(std::uint64_t outputs) {
     return comes_true([&] { return loop.newest_cycle().outputs == outputs; });

@@ -107,7 +107,7 @@ double timestamp_of(const Package& data) {
 }
 
 class ServedRtde : public testing::Test {
- protected:
+ public:
   template <typename Holds>
   static bool comes_true(const Holds& holds) {
     const auto deadline = steady_clock::now() + std::chrono::seconds(10);

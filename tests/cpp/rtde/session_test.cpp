@@ -40,7 +40,7 @@ std::vector<std::string> split(std::string_view list) {
 }
 
 class RtdeSession : public testing::Test {
- protected:
+ public:
   /// Sends, and returns the answers.
   std::vector<Package> ask(std::string_view bytes) {
     const auto packages = packages_in(session.receive(bytes));
