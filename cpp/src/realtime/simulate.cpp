@@ -108,12 +108,14 @@ std::vector<LogRecord> simulate(const Trajectory& trajectory, const JointLimits&
   for (const TimedCommand& command : commands) check(command, limits);
   std::ranges::stable_sort(commands, {}, &TimedCommand::time);
 
+  // First of all, as what runs them keeps something of some seconds' cycles, however short.
+  const double seconds = std::chrono::duration<double>(cycle).count();
+  if (trajectory.duration() / seconds > static_cast<double>(kMostCycles)) {
+    refuse(trajectory.duration() / seconds);
+  }
   Interpolator interpolator(limits, cycle, trajectory.at(0.0).q);
   interpolator.begin(trajectory);
   Guard guard(limits, cycle, {}, trajectory.at(0.0).q);
-  const double seconds = std::chrono::duration<double>(cycle).count();
-  if (trajectory.duration() / seconds > static_cast<double>(kMostCycles))
-    refuse(trajectory.duration() / seconds);
   std::vector<LogRecord> log;
   double share = 1.0;
   std::uint64_t inputs = 0;

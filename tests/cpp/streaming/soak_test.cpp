@@ -302,8 +302,9 @@ TEST_P(Soak, HoldsLimitsPathStatesAndEndsWhateverIsPressed) {
     }
   }
   EXPECT_GT(worst, 0.9) << "the limits were never near: the test shows nothing";
-  EXPECT_GT(finished, 10);
-  EXPECT_GT(stopped, 1);
+  EXPECT_GT(finished, problems(10));
+  EXPECT_GE(stopped, problems(2));
+  if (kCycles < 125'000U) return;  // too few to have met everything
   for (const auto& [state, count] : seen) {
     EXPECT_EQ(count > 0, state != RunState::kFault) << to_string(state);
   }
