@@ -160,8 +160,6 @@ void CycleRunner::take_wish() noexcept VIAPOINT_NONBLOCKING {
   if (wish.number == wish_.number) return;
   wish_ = wish;
   interpolator_.wish(wish.wish);
-  motion_->may_be_jogged.store(false, std::memory_order_relaxed);
-  motion_->acted_on.store(wish.number, std::memory_order_release);
 }
 
 void CycleRunner::take_link() noexcept VIAPOINT_NONBLOCKING {
@@ -248,6 +246,7 @@ void CycleRunner::finish() noexcept VIAPOINT_NONBLOCKING {
     return;
   }
   motion_->may_be_jogged.store(interpolator_.may_be_jogged(), std::memory_order_relaxed);
+  motion_->acted_on.store(wish_.number, std::memory_order_release);
   if (interpolator_.input_missed()) {
     motion_->missed.store(AwaitedInput::of(interpolator_.awaited()), std::memory_order_relaxed);
   }

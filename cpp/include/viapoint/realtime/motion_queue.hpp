@@ -48,7 +48,7 @@ struct QueuedMotion {
   std::atomic<bool> closed{false};  ///< by them: an open motion gets no longer
 
   std::atomic<RunState> state{RunState::kRunning};  ///< the rest is written by the tick
-  std::atomic<std::uint32_t> acted_on{0};           ///< number of the last wish seen
+  std::atomic<std::uint32_t> acted_on{0};           ///< number of the wish that the next goes by
   std::atomic<bool> may_be_jogged{false};           ///< at rest after a wish to pause
   std::atomic<LinkFate> fate{LinkFate::kNotYet};    ///< of the last link, before `link` is empty
   std::atomic<double> nominal_time{0.0};
