@@ -81,4 +81,4 @@ def timed_axes(x: dict[str, Vector], moves: list[AxisLaw | None], timing: Timing
 
 def _timing(timing: Timing) -> _core.profile.AxisTiming:
     # The stubs cannot say what an attribute by name gives; choice() lets only its members through.
-    return getattr(_laws.AxisTiming, choice(timing, "timing", TIMINGS))  # type: ignore[no-any-return]
+    return getattr(_laws.AxisTiming, choice(timing, "timing", TIMINGS))  # type: ignore[no-any-return]  # found by name

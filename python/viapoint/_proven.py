@@ -108,4 +108,4 @@ class Proven:
 
     def _samples(self, columns: dict[str, Vector]) -> Samples:
         # mypy takes a column for a possible robot; the extension gives t, q and derivatives only.
-        return Samples(**columns, robot=self.robot, tools=self.tools)  # type: ignore[arg-type]
+        return Samples(**columns, robot=self.robot, tools=self.tools)  # type: ignore[arg-type]  # columns by name
