@@ -2,19 +2,16 @@
 # for Python as the descriptors in ${viapoint_descriptors}.
 find_package(Protobuf REQUIRED)
 find_package(gRPC CONFIG REQUIRED)
-find_program(GRPC_CPP_PLUGIN grpc_cpp_plugin REQUIRED)
 
 set(generated "${CMAKE_CURRENT_BINARY_DIR}/generated")
 set(proto_folder "${PROJECT_SOURCE_DIR}/proto")
 set(proto viapoint/controller)
 set(viapoint_descriptors "${CMAKE_CURRENT_BINARY_DIR}/controller.binpb")
-set(outputs "${generated}/${proto}.pb.cc" "${generated}/${proto}.pb.h"
-  "${generated}/${proto}.grpc.pb.cc" "${generated}/${proto}.grpc.pb.h" "${viapoint_descriptors}")
+set(outputs "${generated}/${proto}.pb.cc" "${generated}/${proto}.pb.h" "${viapoint_descriptors}")
 file(MAKE_DIRECTORY "${generated}")
 add_custom_command(
   OUTPUT ${outputs}
   COMMAND protobuf::protoc -I "${proto_folder}" "--cpp_out=${generated}"
-    "--grpc_out=${generated}" "--plugin=protoc-gen-grpc=${GRPC_CPP_PLUGIN}"
     "--descriptor_set_out=${viapoint_descriptors}" ${proto}.proto
   DEPENDS "${proto_folder}/${proto}.proto"
   VERBATIM)

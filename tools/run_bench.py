@@ -3,15 +3,17 @@
 Subjects: ``tick`` (one cycle of the interpolator), ``commands`` (random commands replayed against
 geometry and limits), ``plan`` (planning a move), ``certificate``
 (proving a motion), ``walk`` (timing of long paths), ``growth`` (time and memory a move, from ten
-moves to a hundred thousand), ``insertion`` (tool curves as joints, every
-proof checked), ``kinematics`` (inverse kinematics), ``tracking`` (tool lines followed pose by
-pose), all in C++ by viapoint-bench; ``sample`` (states of a motion into numpy arrays) and
+moves to a hundred thousand), ``stream`` (hours of moves told while the arm runs, in virtual
+time), ``insertion`` (tool curves as joints, every proof checked), ``kinematics`` (inverse
+kinematics), ``tracking`` (tool lines followed pose by pose), all in C++ by viapoint-bench;
+``sample`` (states of a motion into numpy arrays) and
 ``programs`` (random programs planned and proven) in Python;
 ``stops`` (stops on the path beside the shortest that a linear program finds);
 ``realtime`` (wake-ups of the loop beside cyclictest, idle and under stress-ng);
 ``remote`` (a controller in a process of its own: calls, heartbeat, latency while clients
-misbehave); ``profiles`` (state to state) beside Ruckig, ``paths`` (timing along paths, corners)
-beside toppra, copp and justblend. Each has its place in tools/benches.
+misbehave); ``soak`` (programs and streams on the clock for 15 minutes, commanded at random from
+four threads: limits, path, memory); ``profiles`` (state to state) beside Ruckig, ``paths`` (timing
+along paths, corners) beside toppra, copp and justblend. Each has its place in tools/benches.
 """
 
 import argparse
@@ -30,6 +32,7 @@ from benches import (
     realtime,
     remote,
     sampling,
+    soak,
     soundness,
     stops,
     tables,
@@ -44,6 +47,7 @@ SUBJECTS = (
     "stops",
     "realtime",
     "remote",
+    "soak",
     "profiles",
     "paths",
 )
@@ -74,6 +78,8 @@ def measure(subject: str, options: argparse.Namespace) -> tuple[list[Row], list[
         return realtime.measure(quick=options.quick), []
     if subject == "remote":
         return remote.measure(quick=options.quick), []
+    if subject == "soak":
+        return soak.measure(options.program, options.minutes, quick=options.quick), []
     if subject == "programs":
         return programs.measure(
             options.program, options.problems or PROGRAMS, quick=options.quick
@@ -100,6 +106,9 @@ def parse(arguments: list[str]) -> argparse.Namespace:
         help="profiles: solve and judge so many, instead of the tables; programs: plan so many",
     )
     parser.add_argument(
+        "--minutes", type=float, default=15.0, metavar="M", help="soak: so long (15)"
+    )
+    parser.add_argument(
         "--program",
         type=Path,
         default=ROOT / "build/bench/tools/bench_cpp/viapoint-bench",
@@ -113,6 +122,8 @@ def parse(arguments: list[str]) -> argparse.Namespace:
     alone = [*options.subjects] in ([name] for name in BY_THE_MILLION)
     if options.problems is not None and (options.problems < 1 or not alone):
         parser.error("--problems goes with profiles or programs alone, and is at least 1")
+    if not options.minutes > 0:
+        parser.error("--minutes is above 0")
     return options
 
 

@@ -50,6 +50,20 @@ void bind_core(py::module_& m) {
       },
       py::arg("path"), py::arg("content"),
       "Writes a whole file: a crash leaves the old content or the new, never a part.");
+  py::class_<AtomicFile>(m, "AtomicFile",
+                         "A file in pieces: a crash leaves the old content or the new.")
+      .def(py::init<const std::string&>(), py::arg("path"))
+      .def(
+          "write",
+          [](AtomicFile& file, const py::bytes& piece) {
+            const std::string_view view = piece;
+            const py::gil_scoped_release release;
+            file.write(view);
+          },
+          py::arg("piece"), "Writes on, beside the old content.")
+      .def("commit", &AtomicFile::commit, py::call_guard<py::gil_scoped_release>(),
+           "What was written takes the place of the old content.")
+      .def("discard", &AtomicFile::discard, "Removes what was written; nothing after commit().");
   m.def("read_file", &read_file, py::arg("path"), py::call_guard<py::gil_scoped_release>(),
         "The whole text of a file.");
 }

@@ -26,8 +26,11 @@ class StreamHandle {
       : StreamHandle(
             robot, program, margin,
             // An arm that is disconnected is not held by its streams.
-            [to = std::weak_ptr<Loop>(loop.open())](std::shared_ptr<const Trajectory> first) {
-              return HandleOf<Loop>{to.lock(), 0, {}}.open()->follow(std::move(first));
+            [this, to = std::weak_ptr<Loop>(loop.open())](std::shared_ptr<const Trajectory> first) {
+              std::shared_ptr<OpenJob> job =
+                  HandleOf<Loop>{to.lock(), 0, {}}.open()->follow(std::move(first));
+              job_ = job;
+              return job;
             }) {}
   StreamHandle(const RobotHandle& robot, const MotionProgram& program, double margin,
                MotionStream::Follow follow)
@@ -70,8 +73,14 @@ class StreamHandle {
   [[nodiscard]] std::optional<JobHandle> job() {
     const Release release;
     const std::lock_guard lock(mutex_);
-    if (stream_.job() == nullptr) return std::nullopt;
-    return JobHandle{stream_.job(), joints_};
+    if (job_ == nullptr) return std::nullopt;
+    return JobHandle{job_, joints_};
+  }
+  [[nodiscard]] std::optional<std::string> state() {
+    const Release release;
+    const std::lock_guard lock(mutex_);
+    if (stream_.run() == nullptr) return std::nullopt;
+    return std::string(to_string(stream_.run()->state()));
   }
   [[nodiscard]] std::uint64_t late_count() {
     const Release release;
@@ -102,6 +111,7 @@ class StreamHandle {
  private:
   int joints_;
   std::mutex mutex_;
+  std::shared_ptr<Job> job_;  ///< null for a run of another process
   MotionStream stream_;
 };
 
@@ -151,7 +161,9 @@ void bind_motion_stream(py::module_& m) {
                              "Steps told that the arm has not begun.")
       .def_property_readonly("wants_steps", &StreamHandle::wants_steps,
                              "What was told gives the arm no motion more.")
-      .def_property_readonly("job", &StreamHandle::job, "The run, once it has begun.")
+      .def_property_readonly("state", &StreamHandle::state, "Of the run, once it has begun.")
+      .def_property_readonly("job", &StreamHandle::job,
+                             "The run, once it has begun, of a loop of this process.")
       .def_property_readonly("late_count", &StreamHandle::late_count)
       .def_property_readonly("late", &StreamHandle::late,
                              "(step, file, line, cycles waited) of the newest late steps.")

@@ -236,7 +236,8 @@ void bind_certificate(py::module_& m) {
       .def_readonly("process_speed", &ProcessStretch::process_speed, "Asked for [m/s].")
       .def_readonly("lowest_speed", &ProcessStretch::lowest_speed, "[m/s]")
       .def_readonly("limit", &ProcessStretch::limit,
-                    "What rules there: \"rest\" where the arm starts or stops, else the limit.")
+                    "What rules there: \"rest\" where the arm starts or stops, else the limit; "
+                    "\"timing\" where none asks for less.")
       .def_readonly("joint", &ProcessStretch::joint, "Whose limit that is, from 0; or None.")
       .def("__repr__", [](const ProcessStretch& s) {
         return "<ProcessStretch move " + std::to_string(s.move) + ", " + std::to_string(s.from) +

@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -28,7 +30,7 @@ GuardOptions guard_of(const RobotHandle& robot, double tool_speed, const Eigen::
 template <typename Loop>
 HandleOf<Loop> make_loop(const RobotHandle& robot, const DriveSetup& drive, double cycle,
                          int silent_cycles, double speed, const Eigen::Vector3d& low,
-                         const Eigen::Vector3d& high) {
+                         const Eigen::Vector3d& high, std::optional<int> processor) {
   if (!(cycle >= 1e-4) || !(cycle <= 1.0)) {
     throw MotionError(ErrorCode::kBadArgument,
                       "cycle is " + std::to_string(cycle) + " s; allowed are 0.0001 s to 1 s.");
@@ -38,6 +40,7 @@ HandleOf<Loop> make_loop(const RobotHandle& robot, const DriveSetup& drive, doub
   options.cycle = std::chrono::nanoseconds(std::llround(cycle * 1e9));
   options.guard = guard_of(robot, speed, low, high);
   options.guard.silent_cycles = silent_cycles;
+  options.processor = processor;
   DriveLinks links;
   const Release release;
   auto loop = std::make_shared<Loop>(make_drive(drive, joints, options.cycle, links),
@@ -56,6 +59,28 @@ Link& simulated(const std::shared_ptr<Link>& link, const char* what) {
   return *link;
 }
 
+using Bits = Eigen::Matrix<std::uint64_t, Eigen::Dynamic, 1>;
+using Stamps = Eigen::Matrix<std::int64_t, Eigen::Dynamic, 1>;
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// Cycle, stamp, joints, inputs and outputs, a row a cycle.
+std::tuple<Bits, Stamps, Rows, Bits, Bits> arrays_of(const std::vector<ObservedCycle>& cycles,
+                                                     int joints) {
+  const auto count = static_cast<Eigen::Index>(cycles.size());
+  std::tuple<Bits, Stamps, Rows, Bits, Bits> out{Bits(count), Stamps(count), Rows(count, joints),
+                                                 Bits(count), Bits(count)};
+  auto& [number, stamp, q, inputs, outputs] = out;
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const ObservedCycle& one = cycles[static_cast<std::size_t>(k)];
+    number[k] = one.cycle;
+    stamp[k] = one.stamp;
+    q.row(k) = one.q.transpose();
+    inputs[k] = one.inputs;
+    outputs[k] = one.outputs;
+  }
+  return out;
+}
+
 /// What both loops have.
 template <typename Loop>
 py::class_<HandleOf<Loop>> bind_loop(py::module_& m, const char* name, const char* doc) {
@@ -63,7 +88,7 @@ py::class_<HandleOf<Loop>> bind_loop(py::module_& m, const char* name, const cha
   py::class_<Handle> loop(m, name, doc);
   loop.def(py::init(&make_loop<Loop>), py::arg("robot"), py::arg("drive"), py::kw_only(),
            py::arg("cycle"), py::arg("silent_cycles"), py::arg("tool_speed"), py::arg("box_min"),
-           py::arg("box_max"))
+           py::arg("box_max"), py::arg("processor") = py::none())
       .def(
           "run",
           [](const Handle& l, const MotionHandle& motion) {
@@ -91,6 +116,15 @@ py::class_<HandleOf<Loop>> bind_loop(py::module_& m, const char* name, const cha
             }
           },
           py::arg("changed"), py::arg("on"), "Switch inputs of the simulated drive, bit by bit.")
+      .def_property_readonly("outputs",
+                             [](const Handle& l) { return l.open()->newest_cycle().outputs; })
+      .def(
+          "switch_outputs",
+          [](const Handle& l, std::uint64_t changed, std::uint64_t on) {
+            l.open()->require_power();
+            l.open()->switch_outputs(changed, on);
+          },
+          py::arg("changed"), py::arg("on"), "Switch outputs by hand from the next cycle on.")
       .def(
           "guide",
           [](const Handle& l, const std::vector<Vector>& positions) {
@@ -98,7 +132,14 @@ py::class_<HandleOf<Loop>> bind_loop(py::module_& m, const char* name, const cha
             std::vector<JointVector> way;
             way.reserve(positions.size());
             for (const Vector& q : positions) way.push_back(joints_from(q, "q", l.joints));
-            simulated(l.links.hand, "an arm").guide(std::move(way));
+            l.open()->require_power();
+            GuidingHand& hand = simulated(l.links.hand, "an arm");
+            hand.guide(std::move(way));
+            if constexpr (std::is_same_v<Loop, ControllerLoop>) {
+              const std::shared_ptr<Loop> open = l.open();
+              const Release release;
+              hand.await([&] { return open->guided(); });
+            }
           },
           py::arg("positions"), "A hand takes the simulated arm there, a position a cycle.")
       .def(
@@ -109,14 +150,15 @@ py::class_<HandleOf<Loop>> bind_loop(py::module_& m, const char* name, const cha
                                return l.open()->guided() ||
                                       (l.links.hand != nullptr && l.links.hand->guides());
                              })
-      .def_property_readonly(
+      .def_property_readonly("newest_cycle",
+                             [](const Handle& l) { return l.open()->newest_cycle().cycle; })
+      .def(
           "observed",
-          [](const Handle& l) {
-            const LoopCycle now = l.open()->newest_cycle();
-            return std::make_tuple(now.stamp, Vector(now.measurement.q), now.measurement.inputs,
-                                   now.outputs);
+          [](const Handle& l, std::uint64_t from, std::size_t most) {
+            return arrays_of(l.open()->observed(from, most), l.joints);
           },
-          "Of the last cycle: stamp [ns], joints, inputs, outputs.")
+          py::arg("from_cycle"), py::arg("most"),
+          "Of cycles that are still kept: numbers, stamps [ns], joints (k, n), inputs, outputs.")
       .def_property_readonly("datagrams",
                              [](const Handle& l) {
                                if (l.links.traffic != nullptr) return counts_of(*l.links.traffic);
@@ -133,6 +175,8 @@ py::class_<HandleOf<Loop>> bind_loop(py::module_& m, const char* name, const cha
                              [](const Handle& l) { return Vector(l.open()->position()); })
       .def_property_readonly("busy", [](const Handle& l) { return l.open()->busy(); })
       .def_property_readonly("fault", [](const Handle& l) { return l.open()->fault(); })
+      .def("fault_cycles",
+           [](const Handle& l) { return LogHandle{l.open()->fault_cycles(), l.joints}; })
       .def_property_readonly("is_open", [](const Handle& l) { return l.loop != nullptr; })
       .def("close", &Handle::close);
   return loop;
@@ -176,9 +220,6 @@ void bind_realtime(py::module_& m) {
   bind_run(m);
   bind_drives(m);
   bind_loop<ControllerLoop>(m, "ControllerLoop", "The 2 ms loop over a drive.")
-      .def_property_readonly(
-          "fault_cycles",
-          [](const LoopHandle& l) { return LogHandle{l.open()->fault_cycles(), l.joints}; })
       .def_property_readonly("shortcomings",
                              [](const LoopHandle& l) { return l.open()->shortcomings(); });
   bind_loop<VirtualLoop>(m, "VirtualLoop", "The same in virtual time.")

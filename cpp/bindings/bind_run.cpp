@@ -1,9 +1,13 @@
 // Runs as Python sees them: jobs, their reports, and what is logged of them.
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <string>
 #include <tuple>
+#include <vector>
 
 #include "run_handles.hpp"
 #include "viapoint/realtime/log_csv.hpp"
@@ -122,7 +126,42 @@ LogHandle log_of(const Columns& columns) {
   return log;
 }
 
+/// Numbers are the shortest text that reads back to the same bits.
+std::string json_list(std::span<const double> values) {
+  std::string text = "[";
+  for (const double value : values) {
+    if (text.size() > 1) text += ',';
+    if (!std::isfinite(value)) {
+      text += "null";
+      continue;
+    }
+    const size_t begin = text.size();
+    std::array<char, 32> digits;
+    text.append(digits.data(),
+                std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr);
+    // Without a point it would be read as an integer, and there is no integer -0.
+    if (text.find_first_of(".e", begin) == std::string::npos) text += ".0";
+  }
+  return text += ']';
+}
+
+/// Hours of cycles are tens of millions of numbers, which Python writes in ten times the time.
+std::vector<std::string> json_rows(const py::array_t<double, py::array::c_style>& values) {
+  if (values.ndim() != 2) {
+    throw MotionError(ErrorCode::kBadArgument, "values must be a matrix, (k, n).");
+  }
+  const auto width = static_cast<size_t>(values.shape(1));
+  std::vector<std::string> texts;
+  texts.reserve(static_cast<size_t>(values.shape(0)));
+  for (py::ssize_t k = 0; k < values.shape(0); ++k) {
+    texts.push_back(json_list({values.data() + static_cast<size_t>(k) * width, width}));
+  }
+  return texts;
+}
+
 void bind_log(py::module_& m) {
+  m.def("json_rows", &json_rows, py::arg("values"),
+        "Each row of a matrix as a list in JSON; null is no finite number.");
   py::class_<LogHandle>(m, "Log", "Every cycle of a run as it was executed.")
       .def("__len__", [](const LogHandle& log) { return log.records.size(); })
       .def("columns", &columns_of, "A dict of arrays, one row a cycle.")
@@ -189,8 +228,8 @@ void bind_job(py::module_& m) {
           py::arg("category"), py::call_guard<Release>())
       .def(
           "on_input",
-          [](const JobHandle& j, int input, bool value, const std::string& action) {
-            j.job->on_input({static_cast<std::int16_t>(input), value, wish_of(action)});
+          [](const JobHandle& j, std::int16_t input, bool value, const std::string& action) {
+            j.job->on_input({input, value, wish_of(action)});
           },
           py::arg("input"), py::arg("value"), py::arg("action"))
       .def_property_readonly(

@@ -181,6 +181,23 @@ void read_start(const YamlValue& value, Config& config) {
   if (!config.start.allFinite()) value.refuse("has a value that is not finite");
 }
 
+void read_processors(YamlMap& map, Config& config) {
+  if (map.has("processor")) {
+    const int processor = map.at("processor").whole_number();
+    if (processor < 0) {
+      map.at("processor").refuse("is " + std::to_string(processor) + "; processors count from 0");
+    }
+    config.processor = processor;
+  }
+  if (map.has("keep_awake")) {
+    const std::string word = map.at("keep_awake").text();
+    if (word != "true" && word != "false") {
+      map.at("keep_awake").refuse("is \"" + word + "\"; allowed are true and false");
+    }
+    config.keep_awake = word == "true";
+  }
+}
+
 /// The stop begins a cycle or two after the twentieth of the heartbeat that the loop keeps for it.
 void check_heartbeat(YamlMap& map, const Config& config) {
   constexpr int kLeastCycles = 40;
@@ -206,6 +223,7 @@ Config read(YamlMap map) {
   if (map.has("cycle")) config.cycle = time_in(map.at("cycle"), 1e-4, 1.0);
   if (map.has("heartbeat")) config.heartbeat = time_in(map.at("heartbeat"), 0.02, 60.0);
   check_heartbeat(map, config);
+  read_processors(map, config);
   if (map.has("tool_speed")) {
     config.guard.tool_speed = number_in(map.at("tool_speed"), 0.0, 1e6, "m/s");
   }
@@ -222,7 +240,7 @@ Config read(YamlMap map) {
     }
   }
   map.finish({"robot", "drive", "start", "listen", "cycle", "heartbeat", "tool_speed", "workspace",
-              "tls", "logs", "rtde"});
+              "tls", "logs", "rtde", "processor", "keep_awake"});
   return config;
 }
 

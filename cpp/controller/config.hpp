@@ -34,6 +34,8 @@ struct Config {
   int port = 7420;
   std::chrono::nanoseconds cycle{2'000'000};
   std::chrono::nanoseconds heartbeat{100'000'000};
+  std::optional<int> processor;           ///< that the loop stays on; none: any
+  bool keep_awake = true;                 ///< no deep sleep of the processors
   SimulatedDriveOptions simulated;        ///< its cycle is the one above
   std::optional<UdpDriveOptions> device;  ///< in place of the simulated drive; joints: the robot's
   JointVector start;   ///< where the simulated drive stands [rad or m]; empty: at zero

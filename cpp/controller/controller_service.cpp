@@ -1,9 +1,11 @@
 #include "controller/controller_service.hpp"
 
+#include <grpcpp/support/byte_buffer.h>
+#include <grpcpp/support/proto_buffer_reader.h>
+#include <grpcpp/support/slice.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <exception>
 #include <string>
 #include <utility>
 
@@ -14,38 +16,34 @@
 namespace viapoint::controller {
 namespace {
 
+constexpr const char* kService = "/viapoint.v1.Controller/";
 constexpr std::size_t kMostName = 200;
 constexpr std::size_t kMostRecords = 1000;
+/// Answers kept for clients to read, the largest of 0.5 MB.
+constexpr std::size_t kMostUnread = 64;
+/// A motion may take seconds to prove, a drive to enable.
+constexpr int kBeatThreads = 1, kCommandThreads = 4, kLookThreads = 2;
+constexpr std::size_t kMostWaiting = 128;  ///< calls of a lane
 
 double seconds(std::chrono::nanoseconds time) {
   return std::chrono::duration<double>(time).count();
 }
 
-/// The problem goes with the status, for clients that want more than its text.
-void tell(const Problem& problem, grpc::ServerContext& context) {
-  context.AddTrailingMetadata("viapoint-problem-bin", wire_of(problem).SerializeAsString());
+template <typename Message>
+Message message_of(const grpc::ByteBuffer& bytes) {
+  Message message;
+  grpc::ByteBuffer copy(bytes);  // of references; the reader wants to own them
+  grpc::ProtoBufferReader reader(&copy);
+  if (reader.status().ok() && message.ParseFromZeroCopyStream(&reader)) return message;
+  throw MotionError(ErrorCode::kBadArgument,
+                    "the bytes sent are no " + Message::descriptor()->name(),
+                    {"use a client of the controller's version"});
 }
 
-/// Runs a call; what it throws is its refusal.
-template <typename Call>
-grpc::Status answer(grpc::ServerContext* context, const Call& call) {
-  try {
-    call();
-    return grpc::Status::OK;
-  } catch (const NotInControl& error) {
-    tell(error.problem(), *context);
-    return {grpc::StatusCode::PERMISSION_DENIED, error.problem().describe()};
-  } catch (const MotionError& error) {
-    tell(error.problem(), *context);
-    return status_of(error.problem());
-  } catch (const std::exception& error) {
-    spdlog::error("a call failed: {}", error.what());
-    Problem problem;
-    problem.code = ErrorCode::kInternal;
-    problem.message = std::string("the controller could not answer: ") + error.what();
-    tell(problem, *context);
-    return status_of(problem);
-  }
+template <typename Message>
+grpc::ByteBuffer bytes_of(const Message& message) {
+  const grpc::Slice slice(message.SerializeAsString());
+  return {&slice, 1};
 }
 
 /// Text that people will read: bounded, and nothing in it that acts on a terminal.
@@ -56,10 +54,14 @@ std::string name_of(const std::string& name) {
                                                    std::to_string(kMostName));
   }
   std::string shown = name;
-  std::replace_if(
-      shown.begin(), shown.end(),
-      [](char letter) { return static_cast<unsigned char>(letter) < ' ' || letter == '\x7f'; },
-      '?');
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    const auto letter = static_cast<unsigned char>(shown[i]);
+    const unsigned char before = i == 0 ? 0 : static_cast<unsigned char>(shown[i - 1]);
+    // U+0080 to U+009F act on terminals, too: in UTF-8 they are 0xc2 and a second byte below 0xa0.
+    const bool is_second = before == 0xc2 && letter >= 0x80 && letter < 0xa0;
+    if (is_second) shown[i - 1] = '?';
+    if (is_second || letter < ' ' || letter == 0x7f) shown[i] = '?';
+  }
   return shown;
 }
 
@@ -96,77 +98,123 @@ void describe(Job& job, v1::RunState& reply) {
 }  // namespace
 
 ControllerService::ControllerService(ArmHost& host, RobotPtr robot, std::chrono::nanoseconds cycle,
-                                     std::chrono::nanoseconds heartbeat,
-                                     std::shared_ptr<std::atomic<std::uint64_t>> inputs)
+                                     std::chrono::nanoseconds heartbeat, SimulatedWorld world)
     : host_(host),
       robot_(std::move(robot)),
       cycle_(cycle),
       heartbeat_(heartbeat),
-      inputs_(std::move(inputs)) {}
-
-grpc::Status ControllerService::GetRobot(Context* context, const v1::GetRobotRequest* /*request*/,
-                                         v1::RobotReply* reply) {
-  return answer(context, [&] {
-    reply->set_version(VIAPOINT_VERSION);
-    reply->set_description(to_yaml(robot_->description()));
-    reply->set_fingerprint(robot_->fingerprint());
-    reply->set_cycle(seconds(cycle_));
-    reply->set_heartbeat(seconds(heartbeat_));
-  });
+      inputs_(std::move(world.inputs)),
+      hand_(std::move(world.hand)),
+      calls_(kMostUnread),
+      beats_(kBeatThreads, kMostWaiting),
+      commands_(kCommandThreads, kMostWaiting),
+      looks_(kLookThreads, kMostWaiting) {
+  serve_all();
 }
 
-grpc::Status ControllerService::GetState(Context* context, const v1::GetStateRequest* /*request*/,
-                                         v1::ArmState* reply) {
-  return answer(context, [&] { *reply = wire_of(host_.status()); });
+template <typename Request, typename Reply>
+void ControllerService::serve(const std::string& method, CallLane& lane,
+                              void (ControllerService::*call)(const Request&, Reply&)) {
+  calls_.add(kService + method, lane,
+             [this, call](const std::string& /*peer*/, const grpc::ByteBuffer& request) {
+               Reply reply;
+               (this->*call)(message_of<Request>(request), reply);
+               return bytes_of(reply);
+             });
 }
 
-grpc::Status ControllerService::GetRun(Context* context, const v1::GetRunRequest* request,
-                                       v1::RunState* reply) {
-  return answer(context, [&] { describe(*host_.job(request->run()), *reply); });
+void ControllerService::serve_all() {
+  serve("GetRobot", looks_, &ControllerService::get_robot);
+  serve("GetState", looks_, &ControllerService::get_state);
+  serve("GetRun", looks_, &ControllerService::get_run);
+  serve("GetReport", looks_, &ControllerService::get_report);
+  serve("GetLog", looks_, &ControllerService::get_log);
+  serve("GetFaultCycles", looks_, &ControllerService::get_fault_cycles);
+  serve("GetCycles", looks_, &ControllerService::get_cycles);
+  serve("Beat", beats_, &ControllerService::beat);
+  serve("GiveUpControl", commands_, &ControllerService::give_up_control);
+  serve("AddPieces", commands_, &ControllerService::add_pieces);
+  serve("Run", commands_, &ControllerService::run);
+  serve("Follow", commands_, &ControllerService::follow);
+  serve("Lengthen", commands_, &ControllerService::lengthen);
+  serve("GetHandOver", commands_, &ControllerService::get_hand_over);
+  serve("Close", commands_, &ControllerService::close);
+  serve("OnInput", commands_, &ControllerService::on_input);
+  serve("SetInputs", commands_, &ControllerService::set_inputs);
+  serve("SetOutputs", commands_, &ControllerService::set_outputs);
+  serve("Steer", commands_, &ControllerService::steer);
+  serve("SetOverride", commands_, &ControllerService::set_override);
+  serve("Jog", commands_, &ControllerService::jog);
+  serve("Guide", commands_, &ControllerService::guide);
+  serve("LetGo", commands_, &ControllerService::let_go);
+  calls_.add(std::string(kService) + "TakeControl", commands_,
+             [this](const std::string& peer, const grpc::ByteBuffer& request) {
+               v1::Control reply;
+               take_control(peer, message_of<v1::TakeControlRequest>(request), reply);
+               return bytes_of(reply);
+             });
 }
 
-grpc::Status ControllerService::GetReport(Context* context, const v1::GetReportRequest* request,
-                                          v1::RunReport* reply) {
-  return answer(context, [&] { *reply = wire_of(host_.job(request->run())->report()); });
+void ControllerService::get_robot(const v1::GetRobotRequest& /*request*/, v1::RobotReply& reply) {
+  reply.set_version(VIAPOINT_VERSION);
+  reply.set_description(to_yaml(robot_->description()));
+  reply.set_fingerprint(robot_->fingerprint());
+  reply.set_cycle(seconds(cycle_));
+  reply.set_heartbeat(seconds(heartbeat_));
 }
 
-grpc::Status ControllerService::GetLog(Context* context, const v1::GetLogRequest* request,
-                                       v1::LogPart* reply) {
-  return answer(context, [&] {
-    const std::size_t count = std::min<std::size_t>(request->count(), kMostRecords);
-    *reply = wire_of(host_.job(request->run())->log(request->from_cycle(), count));
-  });
+void ControllerService::get_state(const v1::GetStateRequest& /*request*/, v1::ArmState& reply) {
+  reply = wire_of(host_.status());
+  // Also before the loop has seen the hand: who guides the arm and looks finds it guided.
+  reply.set_guided(reply.guided() || hand_.guides());
 }
 
-grpc::Status ControllerService::TakeControl(Context* context, const v1::TakeControlRequest* request,
-                                            v1::Control* reply) {
-  return answer(context, [&] {
-    require_this_version(request->version());
-    const std::string name = name_of(request->name());
-    if (name.empty()) throw MotionError(ErrorCode::kBadArgument, "who asks gives no name");
-    reply->set_token(host_.take_control(name));
-    reply->set_heartbeat(seconds(heartbeat_));
-    spdlog::info("\"{}\" has control ({})", name, context->peer());
-  });
+void ControllerService::get_cycles(const v1::GetCyclesRequest& request, v1::CyclesPart& reply) {
+  const std::size_t count = std::min<std::size_t>(request.count(), kMostRecords);
+  reply = wire_of(host_.observed(request.from_cycle(), count));
 }
 
-grpc::Status ControllerService::Beat(Context* context, const v1::BeatRequest* request,
-                                     v1::BeatReply* /*reply*/) {
-  return answer(context, [&] { host_.beat(request->token()); });
+void ControllerService::get_fault_cycles(const v1::GetFaultCyclesRequest& /*request*/,
+                                         v1::LogPart& reply) {
+  reply = wire_of(host_.fault_cycles());
 }
 
-grpc::Status ControllerService::GiveUpControl(Context* context,
-                                              const v1::GiveUpControlRequest* request,
-                                              v1::GiveUpControlReply* /*reply*/) {
-  return answer(context, [&] { host_.give_up_control(request->token()); });
+void ControllerService::get_run(const v1::GetRunRequest& request, v1::RunState& reply) {
+  describe(*host_.job(request.run()), reply);
 }
 
-grpc::Status ControllerService::AddPieces(Context* context, const v1::AddPiecesRequest* request,
-                                          v1::AddPiecesReply* /*reply*/) {
-  return answer(context, [&] {
-    host_.add_pieces(request->token(), request->offset(),
-                     pieces_of(request->pieces(), robot_->joints()));
-  });
+void ControllerService::get_report(const v1::GetReportRequest& request, v1::RunReport& reply) {
+  reply = wire_of(host_.job(request.run())->report());
+}
+
+void ControllerService::get_log(const v1::GetLogRequest& request, v1::LogPart& reply) {
+  const std::size_t count = std::min<std::size_t>(request.count(), kMostRecords);
+  reply = wire_of(host_.job(request.run())->log(request.from_cycle(), count));
+}
+
+void ControllerService::take_control(const std::string& peer, const v1::TakeControlRequest& request,
+                                     v1::Control& reply) {
+  require_this_version(request.version());
+  const std::string name = name_of(request.name());
+  if (name.empty()) throw MotionError(ErrorCode::kBadArgument, "who asks gives no name");
+  reply.set_token(host_.take_control(name));
+  reply.set_heartbeat(seconds(heartbeat_));
+  spdlog::info("\"{}\" has control ({})", name, peer);
+}
+
+void ControllerService::beat(const v1::BeatRequest& request, v1::BeatReply& /*reply*/) {
+  host_.beat(request.token());
+}
+
+void ControllerService::give_up_control(const v1::GiveUpControlRequest& request,
+                                        v1::GiveUpControlReply& /*reply*/) {
+  host_.give_up_control(request.token());
+}
+
+void ControllerService::add_pieces(const v1::AddPiecesRequest& request,
+                                   v1::AddPiecesReply& /*reply*/) {
+  host_.add_pieces(request.token(), request.offset(),
+                   pieces_of(request.pieces(), robot_->joints()));
 }
 
 void ControllerService::require_robot(const std::string& fingerprint) const {
@@ -178,83 +226,77 @@ void ControllerService::require_robot(const std::string& fingerprint) const {
                     {"plan it for the robot of this arm: arm.robot"});
 }
 
-grpc::Status ControllerService::Run(Context* context, const v1::RunRequest* request,
-                                    v1::RunReply* reply) {
-  return answer(context, [&] {
-    require_robot(request->fingerprint());
-    reply->set_run(host_.run(request->token()));
-  });
+void ControllerService::run(const v1::RunRequest& request, v1::RunReply& reply) {
+  require_robot(request.fingerprint());
+  reply.set_run(host_.run(request.token()));
 }
 
-grpc::Status ControllerService::Follow(Context* context, const v1::RunRequest* request,
-                                       v1::RunReply* reply) {
-  return answer(context, [&] {
-    require_robot(request->fingerprint());
-    reply->set_run(host_.follow(request->token()));
-  });
+void ControllerService::follow(const v1::RunRequest& request, v1::RunReply& reply) {
+  require_robot(request.fingerprint());
+  reply.set_run(host_.follow(request.token()));
 }
 
-grpc::Status ControllerService::Lengthen(Context* context, const v1::LengthenRequest* request,
-                                         v1::LengthenReply* /*reply*/) {
-  return answer(context,
-                [&] { host_.lengthen(request->token(), request->run(), request->leave()); });
+void ControllerService::lengthen(const v1::LengthenRequest& request, v1::LengthenReply& /*reply*/) {
+  host_.lengthen(request.token(), request.run(), request.leave());
 }
 
-grpc::Status ControllerService::GetHandOver(Context* context, const v1::GetHandOverRequest* request,
-                                            v1::HandOver* reply) {
-  return answer(context, [&] {
-    *reply = wire_of(host_.hand_over(request->token(), request->run()));
-    describe(*host_.job(request->run()), *reply->mutable_run());
-  });
+void ControllerService::get_hand_over(const v1::GetHandOverRequest& request, v1::HandOver& reply) {
+  reply = wire_of(host_.hand_over(request.token(), request.run()));
+  describe(*host_.job(request.run()), *reply.mutable_run());
 }
 
-grpc::Status ControllerService::Close(Context* context, const v1::CloseRequest* request,
-                                      v1::CloseReply* /*reply*/) {
-  return answer(context, [&] { host_.close(request->token(), request->run()); });
+void ControllerService::close(const v1::CloseRequest& request, v1::CloseReply& /*reply*/) {
+  host_.close(request.token(), request.run());
 }
 
-grpc::Status ControllerService::OnInput(Context* context, const v1::OnInputRequest* request,
-                                        v1::OnInputReply* /*reply*/) {
-  return answer(context, [&] {
-    host_.on_input(request->token(), request->run(),
-                   reaction_of(request->input(), request->value(), request->wish()));
-  });
+void ControllerService::on_input(const v1::OnInputRequest& request, v1::OnInputReply& /*reply*/) {
+  host_.on_input(request.token(), request.run(),
+                 reaction_of(request.input(), request.value(), request.wish()));
 }
 
-grpc::Status ControllerService::SetInputs(Context* context, const v1::SetInputsRequest* request,
-                                          v1::SetInputsReply* /*reply*/) {
-  return answer(context, [&] {
-    host_.require_control(request->token());
-    if (inputs_ == nullptr) {
-      throw MotionError(ErrorCode::kBusy, "the inputs are a real drive's",
-                        {"switch what is wired to them"});
-    }
-    std::uint64_t present = inputs_->load();
-    const auto switched = [&] {
-      return (present & ~request->mask()) | (request->values() & request->mask());
-    };
-    while (!inputs_->compare_exchange_weak(present, switched())) {
-    }
-  });
+void ControllerService::set_inputs(const v1::SetInputsRequest& request,
+                                   v1::SetInputsReply& /*reply*/) {
+  host_.require_control(request.token());
+  if (inputs_ == nullptr) {
+    throw MotionError(ErrorCode::kBusy, "the inputs are a real drive's",
+                      {"switch what is wired to them"});
+  }
+  std::uint64_t present = inputs_->load();
+  const auto switched = [&] {
+    return (present & ~request.mask()) | (request.values() & request.mask());
+  };
+  while (!inputs_->compare_exchange_weak(present, switched())) {
+  }
 }
 
-grpc::Status ControllerService::Steer(Context* context, const v1::SteerRequest* request,
-                                      v1::SteerReply* /*reply*/) {
-  return answer(context, [&] {
-    host_.steer(request->token(), request->run(), steering_of(request->wish()));
-  });
+void ControllerService::set_outputs(const v1::SetOutputsRequest& request,
+                                    v1::SetOutputsReply& /*reply*/) {
+  host_.require_power(request.token());
+  host_.switch_outputs(request.mask(), request.values());
 }
 
-grpc::Status ControllerService::SetOverride(Context* context, const v1::SetOverrideRequest* request,
-                                            v1::SetOverrideReply* /*reply*/) {
-  return answer(context, [&] { host_.set_override(request->token(), request->share()); });
+void ControllerService::steer(const v1::SteerRequest& request, v1::SteerReply& /*reply*/) {
+  host_.steer(request.token(), request.run(), steering_of(request.wish()));
 }
 
-grpc::Status ControllerService::Jog(Context* context, const v1::JogRequest* request,
-                                    v1::JogReply* /*reply*/) {
-  return answer(context, [&] {
-    host_.jog(request->token(), joints_of(request->velocity(), "velocity", robot_->joints()));
-  });
+void ControllerService::set_override(const v1::SetOverrideRequest& request,
+                                     v1::SetOverrideReply& /*reply*/) {
+  host_.set_override(request.token(), request.share());
+}
+
+void ControllerService::jog(const v1::JogRequest& request, v1::JogReply& /*reply*/) {
+  host_.jog(request.token(), joints_of(request.velocity(), "velocity", robot_->joints()));
+}
+
+void ControllerService::guide(const v1::GuideRequest& request, v1::GuideReply& /*reply*/) {
+  host_.require_power(request.token());
+  hand_.add(request.offset(), rows_of(request.positions(), "positions", robot_->joints()));
+  if (request.begins()) hand_.begin(host_);
+}
+
+void ControllerService::let_go(const v1::LetGoRequest& request, v1::LetGoReply& /*reply*/) {
+  host_.require_control(request.token());
+  hand_.let_go();
 }
 
 }  // namespace viapoint::controller

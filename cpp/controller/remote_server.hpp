@@ -2,10 +2,12 @@
 #pragma once
 
 #include <grpcpp/server.h>
+#include <grpcpp/server_builder.h>
 
 #include <memory>
 
 #include "controller/config.hpp"
+#include "controller/connection_gate.hpp"
 #include "controller/controller_service.hpp"
 
 namespace viapoint::controller {
@@ -22,11 +24,12 @@ class RemoteServer {
   RemoteServer& operator=(const RemoteServer&) = delete;
 
   /// The port listened on, also where port 0 left the choice to the system.
-  [[nodiscard]] int port() const { return port_; }
+  [[nodiscard]] int port() const { return gate_->port(); }
 
  private:
-  int port_ = 0;
+  std::unique_ptr<grpc::experimental::ExternalConnectionAcceptor> acceptor_;
   std::unique_ptr<grpc::Server> server_;
+  std::unique_ptr<ConnectionGate> gate_;
 };
 
 }  // namespace viapoint::controller

@@ -58,7 +58,7 @@ JointVector start_of(const Config& config, const RobotModel& robot) {
 
 /// @param start where a simulated arm stands
 std::unique_ptr<Drive> drive_of(const Config& config, const JointVector& start,
-                                const std::shared_ptr<std::atomic<std::uint64_t>>& inputs) {
+                                const SimulatedWorld& world) {
   if (config.device) {
     UdpDriveOptions device = *config.device;
     device.joints = static_cast<int>(start.size());
@@ -66,13 +66,15 @@ std::unique_ptr<Drive> drive_of(const Config& config, const JointVector& start,
   }
   SimulatedDriveOptions options = config.simulated;
   options.cycle = config.cycle;
-  return std::make_unique<SimulatedDrive>(start, inputs, options);
+  return std::make_unique<SimulatedDrive>(start, world.inputs, options, world.hand);
 }
 
 LoopOptions options_of(const Config& config, const RobotModel& robot) {
   LoopOptions options;
   options.cycle = config.cycle;
   options.guard = config.guard;
+  options.processor = config.processor;
+  options.keep_awake = config.keep_awake;
   if (robot.has_kinematics()) options.guard.kinematics = robot.forward();
   return options;
 }
@@ -89,20 +91,26 @@ int serve(const std::string& config_path) {
   std::optional<RunArchive> archive;
   if (!config.logs.empty()) archive.emplace(config.logs);
 
-  const auto inputs = std::make_shared<std::atomic<std::uint64_t>>(0);
+  SimulatedWorld world;
+  if (!config.device) {
+    world.inputs = std::make_shared<std::atomic<std::uint64_t>>(0);
+    world.hand = std::make_shared<GuidingHand>();
+  }
   ArmHost host(
       robot->limits(),
       [&](const JointVector& rest) {
         return std::make_unique<ControllerLoop>(
-            drive_of(config, rest.size() == 0 ? start : rest, inputs), robot->limits(), options);
+            drive_of(config, rest.size() == 0 ? start : rest, world), robot->limits(), options);
       },
       config.heartbeat,
       [&](std::uint64_t number, const std::shared_ptr<Job>& job) {
         if (archive) archive->add(number, job);
+      },
+      [&] {
+        if (world.hand) world.hand->let_go();
       });
   for (const std::string& line : host.status().shortcomings) spdlog::warn("{}", line);
-  ControllerService service(host, robot, config.cycle, config.heartbeat,
-                            config.device ? nullptr : inputs);
+  ControllerService service(host, robot, config.cycle, config.heartbeat, world);
   const RemoteServer server(service, config);
   spdlog::info("\"{}\" is served at {}:{}{}", robot->name(), config.host, server.port(),
                config.tls ? ", to clients with a certificate" : "");

@@ -85,6 +85,23 @@ JointVector joints_of(const Doubles& values, const char* name, int joints) {
   return out;
 }
 
+std::vector<JointVector> rows_of(const Doubles& values, const char* name, int joints) {
+  if (values.size() % joints != 0) {
+    refuse(std::string(name) + " has " + std::to_string(values.size()) +
+           " values; expected are whole rows of " + std::to_string(joints));
+  }
+  std::vector<JointVector> rows;
+  for (int k = 0; k < values.size(); k += joints) {
+    JointVector& row = rows.emplace_back(joints);
+    for (int i = 0; i < joints; ++i) row[i] = values[k + i];
+    if (!row.allFinite()) {
+      refuse(std::string(name) + ": row " + std::to_string(k / joints) +
+             " holds a value that is not finite");
+    }
+  }
+  return rows;
+}
+
 std::vector<TrajectoryPiece> pieces_of(const google::protobuf::RepeatedPtrField<v1::Piece>& pieces,
                                        int joints) {
   std::vector<TrajectoryPiece> out;
@@ -179,6 +196,20 @@ v1::ArmState wire_of(const HostStatus& status) {
   out.set_stamp(status.stamp);
   out.set_inputs(status.inputs);
   out.set_outputs(status.outputs);
+  out.set_cycle(status.cycle);
+  out.set_guided(status.guided);
+  return out;
+}
+
+v1::CyclesPart wire_of(std::span<const ObservedCycle> cycles) {
+  v1::CyclesPart out;
+  for (const ObservedCycle& one : cycles) {
+    out.add_cycle(one.cycle);
+    out.add_stamp(one.stamp);
+    out.add_inputs(one.inputs);
+    out.add_outputs(one.outputs);
+    append(one.q, one.q.size(), *out.mutable_measured());
+  }
   return out;
 }
 

@@ -20,6 +20,8 @@ using Doubles = google::protobuf::RepeatedField<double>;
 
 /// One value a joint. @throws MotionError(kBadArgument) unless there are `joints`, finite
 [[nodiscard]] JointVector joints_of(const Doubles& values, const char* name, int joints);
+/// Row by row. @throws MotionError(kBadArgument) unless they are whole rows of `joints`, finite
+[[nodiscard]] std::vector<JointVector> rows_of(const Doubles& values, const char* name, int joints);
 /// @throws MotionError(kBadArgument) naming the first piece that is none for so many joints
 [[nodiscard]] std::vector<TrajectoryPiece> pieces_of(
     const google::protobuf::RepeatedPtrField<v1::Piece>& pieces, int joints);
@@ -33,6 +35,7 @@ using Doubles = google::protobuf::RepeatedField<double>;
 [[nodiscard]] v1::HandOver wire_of(const HandOver& hand_over);
 [[nodiscard]] v1::ArmState wire_of(const HostStatus& status);
 [[nodiscard]] v1::RunReport wire_of(const RunReport& report);
+[[nodiscard]] v1::CyclesPart wire_of(std::span<const ObservedCycle> cycles);
 [[nodiscard]] v1::LogPart wire_of(std::span<const LogRecord> records);
 
 /// The status that tells a client of a refusal.

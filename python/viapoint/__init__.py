@@ -35,6 +35,7 @@ from ._curve_fit import CurveFit, fit_curve
 from ._drives import SimulatedDrive
 from ._job import Job, RunReport
 from ._knots import insert_knots
+from ._local_arm import LocalArm
 from ._log_files import load_log
 from ._motion import Motion
 from ._plant import MujocoPlant
@@ -43,12 +44,14 @@ from ._playback_file import load_recording
 from ._points import PointList, TouchUp
 from ._program import Program
 from ._recording import Recording
+from ._remote_arm import RemoteArm
 from ._report import Report
 from ._robot import Robot, joint_robot, load_robot
 from ._run_log import RunLog
 from ._samples import Samples
 from ._simulation import simulate, simulate_jog
-from ._stream import LateStep, Stream, StreamJob
+from ._stream import Stream
+from ._stream_job import LateStep, StreamJob
 from ._tls import TlsFiles
 from ._units import deg, mm
 from ._zone import Zone, deviation, joint_deviation, radius
@@ -67,6 +70,7 @@ __all__ = [
     "JointLimits",
     "Knots",
     "LateStep",
+    "LocalArm",
     "Motion",
     "MotionError",
     "MujocoPlant",
@@ -75,6 +79,7 @@ __all__ = [
     "Problem",
     "Program",
     "Recording",
+    "RemoteArm",
     "Report",
     "Robot",
     "RunLog",

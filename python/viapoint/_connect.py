@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Literal, TypedDict, Unpack, overload
 from urllib.parse import parse_qs, urlsplit
 
 import numpy as np
@@ -11,13 +12,46 @@ from . import _core, _session
 from ._arguments import ArrayLike, Vector, integer, number, vector
 from ._arm import Arm
 from ._drives import SimulatedDrive, udp_device
+from ._local_arm import LocalArm
 from ._motion import CYCLE
+from ._remote_arm import RemoteArm
 from ._robot import Robot, load_robot, require_robot, require_within_limits
 from ._tls import TlsFiles
 from ._virtual import VirtualLoop
 from .errors import BadArgumentError
 
 
+class _LocalOptions(TypedDict, total=False):
+    """What `connect` is told of an arm of this process, but for its start."""
+
+    robot: Robot | None
+    drive: SimulatedDrive | None
+    silent_cycles: int | None
+    cycle: float
+    processor: int | None
+    tool_speed: float | None
+    workspace: tuple[ArrayLike, ArrayLike] | None
+
+
+@overload
+def connect(url: str, *, start: ArrayLike, **options: Unpack[_LocalOptions]) -> LocalArm: ...
+@overload
+def connect(
+    url: str, *, watch: Literal[True], robot: Robot | None = None, tls: TlsFiles | None = None
+) -> RemoteArm: ...
+@overload
+def connect(
+    url: str, *, tls: TlsFiles, robot: Robot | None = None, watch: bool = False
+) -> RemoteArm: ...
+@overload
+def connect(
+    url: str,
+    *,
+    start: ArrayLike | None = None,
+    watch: bool = False,
+    tls: TlsFiles | None = None,
+    **options: Unpack[_LocalOptions],
+) -> Arm: ...
 def connect(
     url: str,
     *,
@@ -26,6 +60,7 @@ def connect(
     drive: SimulatedDrive | None = None,
     silent_cycles: int | None = None,
     cycle: float = CYCLE,
+    processor: int | None = None,
     tool_speed: float | None = None,
     workspace: tuple[ArrayLike, ArrayLike] | None = None,
     watch: bool = False,
@@ -54,6 +89,9 @@ def connect(
         path. Default: 10.
     cycle : float
         The loop's cycle [s].
+    processor : int, optional
+        That the loop's thread stays on, from 0; where it cannot, `Arm.shortcomings` says so.
+        Default: any.
     tool_speed : float, optional
         The guard's limit of the tool point's speed [m/s], e.g. 0.25 in reduced mode. A run or jog
         that goes beyond it is stopped on its path, and the arm has to be connected anew.
@@ -67,7 +105,8 @@ def connect(
     Returns
     -------
     Arm
-        For a ``with`` block; a `RemoteArm` of a controller.
+        For a ``with`` block: a `LocalArm`, or the `RemoteArm` of a controller. Where
+        `start`, `watch` or `tls` is given a type checker knows which; else ``isinstance`` says it.
 
     Raises
     ------
@@ -96,6 +135,7 @@ def connect(
             "start": start,
             "drive": drive,
             "silent_cycles": silent_cycles,
+            "processor": processor,
             "tool_speed": tool_speed,
             "workspace": workspace,
         }
@@ -134,7 +174,7 @@ def connect(
         simulated = _simulated(arm_robot, start, query, drive or SimulatedDrive())
         if virtual:
             loop = VirtualLoop(arm_robot, simulated, period, speed, (low, high))
-            return Arm(arm_robot, loop, period)
+            return LocalArm(arm_robot, loop, period)
         setup = simulated
     else:
         setup = device
@@ -146,8 +186,9 @@ def connect(
         tool_speed=speed,
         box_min=low,
         box_max=high,
+        processor=None if processor is None else integer(processor, "processor", 0, 4095),
     )
-    return Arm(arm_robot, core, period)
+    return LocalArm(arm_robot, core, period)
 
 
 def _simulated(
@@ -169,20 +210,20 @@ def _connect_remote(
     robot: Robot | None,
     watch: bool,
     tls: TlsFiles | None,
-) -> Arm:
+) -> RemoteArm:
     for name, value in told.items():
         if value is not None:
             raise BadArgumentError(
                 f"{name} is for an arm of this process; a controller's is in its configuration."
             )
     try:
-        from . import _remote_arm
+        from ._remote_connect import connect_remote
     except ImportError as error:
         raise BadArgumentError(
             f"Connecting to a controller needs what is not installed: {error}.",
             ways_out=['Install it: pip install "viapoint[remote]".'],
         ) from None
-    return _remote_arm.connect_remote(url, robot, watch, tls)
+    return connect_remote(url, robot, watch, tls)
 
 
 def _guarded(

@@ -62,17 +62,8 @@ class CurveSteps(StepList):
             through the orientation of `via` as well; the tool's z axis by the least turn, free to
             spin about it; or only the position held. About an axis there is no end pose, so
             "least" and "through" mean nothing.
-        speed, acceleration : float, optional
-            At most that at the tool's point [m/s], [m/s²].
-        angular_speed, angular_acceleration : float, optional
-            At most that of the tool's turning [rad/s], [rad/s²].
-        process_speed : float, optional
-            Tool speed to be kept wherever the limits allow [m/s], instead of `speed`; see
-            `Motion.process_stretches`.
-        scale : float, optional
-            Share of all joint limits, in (0, 1].
-        zone : Zone, float or "fine", optional
-            How near the move must pass its end.
+        **wishes
+            Limits of the move, the speed that it shall hold, and its zone, as for `movel`.
 
         Raises
         ------
@@ -127,17 +118,8 @@ class CurveSteps(StepList):
             Travel along the axis for every positive turn [m]. 0: a turn on the spot.
         axis : array_like, (3,), optional
             Direction in the base frame. Default: the z axis of the tool.
-        speed, acceleration : float, optional
-            At most that at the tool's point [m/s], [m/s²].
-        angular_speed, angular_acceleration : float, optional
-            At most that of the tool's turning [rad/s], [rad/s²].
-        process_speed : float, optional
-            Tool speed to be kept wherever the limits allow [m/s], instead of `speed`; see
-            `Motion.process_stretches`.
-        scale : float, optional
-            Share of all joint limits, in (0, 1].
-        zone : Zone, float or "fine", optional
-            How near the move must pass its end.
+        **wishes
+            Limits of the move, the speed that it shall hold, and its zone, as for `movel`.
 
         Raises
         ------
@@ -187,17 +169,9 @@ class CurveSteps(StepList):
             acceleration; by the least rotation from the first to the last; wrist joints
             interpolated; as it is at the start; led along the curve; its z axis through that of
             every point, free to spin about it; or left to the joints (default for `positions`).
-        speed, acceleration : float, optional
-            At most that at the tool's point [m/s], [m/s²]; of no meaning in joint space.
-        angular_speed, angular_acceleration : float, optional
-            At most that of the tool's turning [rad/s], [rad/s²]; of no meaning in joint space.
-        process_speed : float, optional
-            Tool speed to be kept wherever the limits allow [m/s], instead of `speed`; see
-            `Motion.process_stretches`.
-        scale : float, optional
-            Share of all joint limits, in (0, 1].
-        zone : Zone, float or "fine", optional
-            How near the move must pass its last point.
+        **wishes
+            Limits of the move, the speed that it shall hold, and its zone, as for `movel`; in
+            joint space `scale` and `zone` alone have a meaning.
 
         Raises
         ------

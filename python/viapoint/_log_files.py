@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import json
 import os
 import tempfile
@@ -15,6 +14,7 @@ from . import _core
 from ._arguments import Vector, file_name
 from ._motion import CYCLE
 from ._robot import Robot, load_robot, require_robot
+from ._written_aside import written_aside
 from .errors import BadArgumentError, BadProgramError, FileError, MotionError
 
 if TYPE_CHECKING:
@@ -45,16 +45,14 @@ def save_log(log: RunLog, path: str | os.PathLike[str]) -> None:
         log.core.save_csv(name)
         return
     if ending == ".mcap":
-        from ._log_mcap import mcap_bytes
+        from ._log_mcap import write_mcap
 
-        _core.write_file_atomically(name, mcap_bytes(log, header_of(log)))
+        write_mcap(log, header_of(log), name)
         return
     columns = {key: getattr(log, key) for key in (*SCALARS, *ROWS)}
-    buffer = io.BytesIO()
-    np.savez_compressed(
-        buffer, period=log.period, header=np.array(json.dumps(header_of(log))), **columns
-    )
-    _core.write_file_atomically(name, buffer.getvalue())
+    header = np.array(json.dumps(header_of(log)))
+    with written_aside(name) as file:
+        np.savez_compressed(file, period=log.period, header=header, **columns)
 
 
 def load_log(path: str | os.PathLike[str], robot: Robot | None = None) -> RunLog:
@@ -96,7 +94,7 @@ def load_log(path: str | os.PathLike[str], robot: Robot | None = None) -> RunLog
         )
     try:
         if ending == ".csv":
-            columns = _read_csv(_core.read_file(name))
+            columns = _read_csv(_core.read_file(name), robot)
             header: dict[str, Any] = {"period": _period_of(columns)}
         elif ending == ".mcap":
             from ._log_mcap import read_mcap
@@ -131,6 +129,7 @@ def header_of(log: RunLog) -> dict[str, Any]:
     return {
         "viapoint": _core.__version__,
         "period": log.period,
+        "joints": log.robot.joints,
         "robot": log.robot._core.to_yaml(),
         "tools": [[step, robot.tool.tolist()] for step, robot in log.tools],
     }
@@ -161,14 +160,17 @@ def _read_npz(name: str) -> tuple[dict[str, Any], Columns]:
         return header, {key: file[key] for key in (*SCALARS, *ROWS)}
 
 
-def _read_csv(text: str) -> Columns:
+def _read_csv(text: str, robot: Robot | None) -> Columns:
     lines = text.splitlines()
     names = lines[0].split(",") if lines else []
     joints = sum(name.startswith("measured") for name in names)
     wanted = [_CSV_NAMES.get(key, key) for key in SCALARS]
     wanted += [f"{row}{i + 1}" for row in ROWS for i in range(joints)]
-    if names != wanted or not joints or not text.endswith("\n"):
+    is_of_joints = joints > 0 or len(lines) == 1
+    if names != wanted or not is_of_joints or not text.endswith("\n"):
         raise ValueError("its columns are not those of a log, or its last line is cut short")
+    if not joints and robot is not None:  # no cycle tells how many there are
+        joints = robot.joints
     cells = [line.split(",") for line in lines[1:]]
     if any(len(row) != len(names) for row in cells):
         raise ValueError("a line has another number of values than the first")

@@ -6,9 +6,10 @@ its base frame, and events as a log. The others hold the rest of every cycle, to
 
 from __future__ import annotations
 
-import io
 import json
 from collections.abc import Iterator
+from dataclasses import replace
+from itertools import repeat
 from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
@@ -16,11 +17,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _core
+from ._arguments import Vector
 from ._rotation_vectors import quaternions
+from ._written_aside import written_aside
 from .errors import FileError
 
 if TYPE_CHECKING:
     from ._run_log import RunLog
+    from ._samples import Samples
 
 _NUMBER = {"type": "number"}
 _INTEGER = {"type": "integer"}
@@ -28,6 +32,12 @@ _TEXT = {"type": "string"}
 _NUMBERS = {"type": "array", "items": _NUMBER}
 _LEVEL_INFO = 2
 """Of ``foxglove.Log``."""
+_POSE = (
+    '"frame_id":"base","pose":{"position":{"x":%s,"y":%s,"z":%s},'
+    '"orientation":{"w":%s,"x":%s,"y":%s,"z":%s}}'
+)
+_BLOCK = 1000
+"""So many cycles are written at a time."""
 
 
 def _record(**members: object) -> dict[str, object]:
@@ -38,7 +48,8 @@ _TIME = _record(sec=_INTEGER, nsec=_INTEGER)
 _JOINT = _record(name=_TEXT, position=_NUMBER, velocity=_NUMBER, acceleration=_NUMBER)
 _POINT = _record(x=_NUMBER, y=_NUMBER, z=_NUMBER)
 _TURN = _record(x=_NUMBER, y=_NUMBER, z=_NUMBER, w=_NUMBER)
-_SCALARS = ("cycle", "latency", "compute", "nominal_time", "rate", "move", "outputs")
+_INTEGERS = ("cycle", "latency", "compute", "move", "outputs")
+_RATES = ("nominal_time", "rate")
 _SETPOINT = ("q", "qd", "qdd", "qddd")
 
 TOPICS: dict[str, tuple[str, dict[str, object]]] = {
@@ -47,8 +58,8 @@ TOPICS: dict[str, tuple[str, dict[str, object]]] = {
         _record(
             timestamp=_TIME,
             state=_TEXT,
-            **dict.fromkeys(("nominal_time", "rate"), _NUMBER),
-            **{k: _INTEGER for k in _SCALARS if k not in ("nominal_time", "rate")},
+            **dict.fromkeys(_RATES, _NUMBER),
+            **dict.fromkeys(_INTEGERS, _INTEGER),
         ),
     ),
     "/setpoint": (
@@ -74,29 +85,26 @@ TOPICS: dict[str, tuple[str, dict[str, object]]] = {
 """Of each topic its schema's name, and the schema: an object of these members."""
 
 
-def mcap_bytes(log: RunLog, header: dict[str, Any]) -> bytes:
-    """Return the file of a log.
+def write_mcap(log: RunLog, header: dict[str, Any], path: str) -> None:
+    """Write the file of a log, chunk by chunk.
 
     Raises
     ------
     FileError
-        The package ``mcap`` is not installed.
+        It cannot be written, or the package ``mcap`` is not installed.
     """
     writer_of, _ = _package()
-    buffer = io.BytesIO()
-    writer = writer_of.Writer(buffer)
-    writer.start(profile="", library=f"viapoint {_core.__version__}")
-    channels = {}
-    for topic, (name, schema) in TOPICS.items():
-        number = writer.register_schema(name, "jsonschema", json.dumps(schema).encode())
-        channels[topic] = writer.register_channel(topic, "json", number)
-    writer.add_metadata("viapoint", {"header": json.dumps(header)})
-    for topic, row, stamp, message in _messages(log):
-        message["timestamp"] = {"sec": stamp // 10**9, "nsec": stamp % 10**9}
-        data = json.dumps(message, allow_nan=False, separators=(",", ":")).encode()
-        writer.add_message(channels[topic], stamp, data, stamp, row)
-    writer.finish()
-    return buffer.getvalue()
+    with written_aside(path) as file:
+        writer = writer_of.Writer(file)
+        writer.start(profile="", library=f"viapoint {_core.__version__}")
+        channels = {}
+        for topic, (name, schema) in TOPICS.items():
+            number = writer.register_schema(name, "jsonschema", json.dumps(schema).encode())
+            channels[topic] = writer.register_channel(topic, "json", number)
+        writer.add_metadata("viapoint", {"header": json.dumps(header)})
+        for topic, row, stamp, data in _messages(log):
+            writer.add_message(channels[topic], stamp, data, stamp, row)
+        writer.finish()
 
 
 def read_mcap(path: str) -> tuple[dict[str, Any], dict[str, np.ndarray[Any, Any]]]:
@@ -127,14 +135,14 @@ def read_mcap(path: str) -> tuple[dict[str, Any], dict[str, np.ndarray[Any, Any]
     if header is None:
         raise ValueError("it is no log of viapoint")
     states = {state: i for i, state in enumerate(_core.run_states())}
-    columns = {key: np.array([row[key] for row in rows["/cycle"]]) for key in _SCALARS}
+    columns = {key: np.array([row[key] for row in rows["/cycle"]]) for key in (*_INTEGERS, *_RATES)}
     columns["outputs"] = np.array([row["outputs"] for row in rows["/cycle"]], dtype=np.uint64)
     columns["state"] = np.array([states[row["state"]] for row in rows["/cycle"]], dtype=np.uint8)
     columns["stamp"] = np.array(stamps, dtype=np.int64)
-    for key in _SETPOINT:
-        columns[key] = np.array([row[key] for row in rows["/setpoint"]], dtype=np.float64)
-    measured = [row["q"] for row in rows["/measured"]]
-    columns["measured"] = np.array(measured, dtype=np.float64)  # None is NaN
+    table = {key: [row[key] for row in rows["/setpoint"]] for key in _SETPOINT}
+    table["measured"] = [row["q"] for row in rows["/measured"]]  # None is NaN
+    for key, values in table.items():
+        columns[key] = np.array(values or np.zeros((0, header["joints"])), dtype=np.float64)
     return header, columns
 
 
@@ -150,38 +158,103 @@ def _package() -> tuple[ModuleType, ModuleType]:
     return mcap.writer, mcap.reader
 
 
-def _messages(log: RunLog) -> Iterator[tuple[str, int, int, dict[str, Any]]]:
-    """All of a log in the order of time: topic, number of the cycle's row, stamp and content."""
-    names = log.robot.joint_names
-    poses = log.samples.pose if log.robot.has_kinematics else None
-    turns = None if poses is None else quaternions(poses[:, :3, :3]).tolist()
+def _messages(log: RunLog) -> Iterator[tuple[str, int, int, bytes]]:
+    """All of a log in the order of time: topic, number of the cycle's row, stamp, and JSON."""
     before: dict[str, Any] = {}
-    for k in range(len(log)):
-        stamp = int(log.stamp[k])
-        state = log.STATES[log.state[k]]
-        scalars = {key: getattr(log, key)[k].item() for key in _SCALARS}
-        yield "/cycle", k, stamp, {**scalars, "state": state}
-        yield "/setpoint", k, stamp, {key: getattr(log, key)[k].tolist() for key in _SETPOINT}
-        measured = [None if np.isnan(v) else float(v) for v in log.measured[k]]
-        yield "/measured", k, stamp, {"q": measured}
-        there = np.where(np.isnan(log.measured[k]), log.q[k], log.measured[k])
-        joints = [
-            {"name": name, "position": q, "velocity": qd, "acceleration": qdd}
-            for name, q, qd, qdd in zip(
-                names, there.tolist(), log.qd[k].tolist(), log.qdd[k].tolist(), strict=True
+    samples = log.samples
+    about = f'"name":{json.dumps(log.robot.name)},"file":"","line":0'
+    for begin in range(0, len(log), _BLOCK):
+        rows = slice(begin, begin + _BLOCK)
+        columns = zip(
+            log.stamp[rows].tolist(),
+            _cycles(log, rows),
+            _setpoints(log, rows),
+            _measured(log, rows),
+            _joint_states(log, rows),
+            _tools(samples, rows),
+            _changing(log, rows),
+            strict=True,
+        )
+        for k, (stamp, cycle, setpoint, measured, joints, tool, now) in enumerate(columns, begin):
+            told = [
+                ("/cycle", cycle),
+                ("/setpoint", setpoint),
+                ("/measured", measured),
+                ("/joint_states", joints),
+            ]
+            if tool:
+                told.append(("/tool", tool))
+            told.extend(
+                ("/events", f'"level":{_LEVEL_INFO},"message":"{text}",{about}')
+                for text in _events(before, now)
             )
-        ]
-        yield "/joint_states", k, stamp, {"joints": joints}
-        if poses is not None and turns is not None:
-            x, y, z = poses[k, :3, 3].tolist()
-            turn = dict(zip("wxyz", turns[k], strict=True))
-            pose = {"position": {"x": x, "y": y, "z": z}, "orientation": turn}
-            yield "/tool", k, stamp, {"frame_id": "base", "pose": pose}
-        now = {"state": state, "move": scalars["move"], "outputs": scalars["outputs"]}
-        for text in _events(before, now):
-            about = {"name": log.robot.name, "file": "", "line": 0}
-            yield "/events", k, stamp, {"level": _LEVEL_INFO, "message": text, **about}
-        before = now
+            before = now
+            time = f'"timestamp":{{"sec":{stamp // 10**9},"nsec":{stamp % 10**9}}}'
+            for topic, members in told:
+                yield topic, k, stamp, f"{{{members},{time}}}".encode()
+
+
+# These give the members of a message, JSON without its braces, for each of the rows: put together
+# as text, since an hour has nine million messages.
+
+
+def _cycles(log: RunLog, rows: slice) -> Iterator[str]:
+    template = ",".join(f'"{key}":%d' for key in _INTEGERS)
+    integers = zip(*(getattr(log, key)[rows].tolist() for key in _INTEGERS), strict=True)
+    values = np.stack([getattr(log, key)[rows] for key in _RATES], axis=1)
+    rates = _filled(",".join(f'"{key}":%s' for key in _RATES), values)
+    for state, counts, rate in zip(log.state[rows], integers, rates, strict=True):
+        yield f'{template % counts},{rate},"state":"{log.STATES[state]}"'
+
+
+def _rows(values: Vector) -> list[str]:
+    """Return each row as a list in JSON."""
+    if not np.isfinite(values).all():
+        raise ValueError("a value of the log is not finite")
+    return _core.json_rows(values)
+
+
+def _filled(template: str, values: Vector) -> Iterator[str]:
+    """Put the numbers of each row into the places of a template."""
+    for row in _rows(values):
+        yield template % tuple(row[1:-1].split(","))
+
+
+def _setpoints(log: RunLog, rows: slice) -> Iterator[str]:
+    columns = [_rows(getattr(log, key)[rows]) for key in _SETPOINT]
+    for q, qd, qdd, qddd in zip(*columns, strict=True):
+        yield f'"q":{q},"qd":{qd},"qdd":{qdd},"qddd":{qddd}'
+
+
+def _measured(log: RunLog, rows: slice) -> Iterator[str]:
+    for q in _core.json_rows(log.measured[rows]):
+        yield f'"q":{q}'
+
+
+def _joint_states(log: RunLog, rows: slice) -> Iterator[str]:
+    names = (json.dumps(name).replace("%", "%%") for name in log.robot.joint_names)
+    joints = ",".join(
+        f'{{"name":{name},"position":%s,"velocity":%s,"acceleration":%s}}' for name in names
+    )
+    seen = np.where(np.isnan(log.measured[rows]), log.q[rows], log.measured[rows])
+    values = np.stack((seen, log.qd[rows], log.qdd[rows]), axis=2)
+    return _filled(f'"joints":[{joints}]', values.reshape(len(values), -1))
+
+
+def _tools(samples: Samples, rows: slice) -> Iterator[str]:
+    """Poses of the tool; empty for a robot without kinematics."""
+    if not samples.robot.has_kinematics:
+        return repeat("", len(samples.t[rows]))
+    part = {key: getattr(samples, key)[rows] for key in ("t", "q", "qd", "qdd", "qddd", "move")}
+    poses = replace(samples, **part).pose
+    return _filled(_POSE, np.hstack((poses[:, :3, 3], quaternions(poses[:, :3, :3]))))
+
+
+def _changing(log: RunLog, rows: slice) -> Iterator[dict[str, Any]]:
+    """Tell what an event is about when it changes."""
+    columns = (log.state[rows], log.move[rows], log.outputs[rows])
+    for state, move, outputs in zip(*(column.tolist() for column in columns), strict=True):
+        yield {"state": log.STATES[state], "move": move, "outputs": outputs}
 
 
 def _events(before: dict[str, Any], now: dict[str, Any]) -> Iterator[str]:

@@ -8,12 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from ._arguments import ArrayLike, Vector, integer, number, numbers_of
-from ._attained import attained_runs
+from ._attained import Attained, attained_runs
+from ._legs import middle_half
 from ._run_log import RunLog
 from .errors import BadArgumentError
 
-_STEADY = 0.5
-"""The standard measures on the middle half of the path's length."""
+OVER = 0.01
+"""A speed is the way between two places so far apart in time [s]."""
 
 
 @dataclass(frozen=True)
@@ -83,7 +84,7 @@ def path_velocity(commanded: float, attained: Sequence[ArrayLike]) -> PathVeloci
 
 
 def path_velocity_from_logs(
-    logs: Sequence[RunLog], commanded: float, *, move: int, over: float = 0.01
+    logs: Sequence[RunLog], commanded: float, *, move: int, over: float = OVER
 ) -> PathVelocity:
     """Take the speeds of one move from what drives measured, on the middle half of its way.
 
@@ -107,22 +108,28 @@ def path_velocity_from_logs(
     """
     step = integer(move, "move", 0, 2**31 - 1)
     window = number(over, "over", "s", above=0.0)
-    speeds: list[Vector] = []
-    for run in attained_runs(logs):
-        rows = np.flatnonzero(run.move == step)
-        if len(rows) < 2:
-            raise BadArgumentError(f"{run.name} holds nothing of move {step}.")
-        way = run.along[rows] - run.along[rows[0]]
-        edge = 0.5 * (1.0 - _STEADY) * way[-1]
-        steady = rows[(way >= edge) & (way <= way[-1] - edge)]
-        apart = max(1, round(window / run.period))
-        if len(steady) <= apart:
-            raise BadArgumentError(
-                f"{run.name}: the middle half of move {step} has {len(steady)} cycles, less than "
-                f"{window:g} s.",
-                ways_out=["Give a shorter `over`, or take a longer move."],
-            )
-        places, times = run.reached[steady, :3, 3], run.time[steady]
-        distance = np.linalg.norm(places[apart:] - places[:-apart], axis=1)
-        speeds.append(distance / (times[apart:] - times[:-apart]))
-    return path_velocity(commanded, speeds)
+    return path_velocity(commanded, [speeds_of(run, step, window) for run in attained_runs(logs)])
+
+
+def speeds_of(run: Attained, move: int, over: float = OVER) -> Vector:
+    """Speeds that were attained on the middle half of a move, (k,) [m/s].
+
+    Raises
+    ------
+    BadArgumentError
+        As `path_velocity_from_logs`.
+    """
+    steady = middle_half(run, move)
+    if len(steady) < 2:
+        raise BadArgumentError(f"{run.name} holds nothing of move {move}.")
+    apart = max(1, round(over / run.period))
+    if len(steady) <= apart:
+        raise BadArgumentError(
+            f"{run.name}: the middle half of move {move} has {len(steady)} cycles, less than "
+            f"{over:g} s.",
+            ways_out=["Give a shorter `over`, or take a longer move."],
+        )
+    places, times = run.reached[steady, :3, 3], run.time[steady]
+    distance = np.linalg.norm(places[apart:] - places[:-apart], axis=1)
+    speeds: Vector = distance / (times[apart:] - times[:-apart])
+    return speeds

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -33,6 +34,35 @@ MOST_SAMPLES = 4000
 ENDINGS = (".png", ".svg", ".pdf")
 
 
+@dataclass(frozen=True)
+class Subject:
+    """What is drawn, besides its samples.
+
+    Attributes
+    ----------
+    robot : Robot
+        Whose limits and kinematics.
+    name : str
+        The program's.
+    duration : float
+        [s]
+    points : ndarray, (k, 3)
+        Tool positions of the program's start and targets [m]; k is 0 where they are not known.
+    """
+
+    robot: Robot
+    name: str
+    duration: float
+    points: Vector
+
+    @classmethod
+    def of(cls, motion: Motion) -> Subject:
+        """Take it from a motion."""
+        robot = motion.robot
+        points = _target_points(motion) if robot.has_kinematics else np.zeros((0, 3))
+        return cls(robot, motion.program.name, motion.duration, points)
+
+
 def save_plot(motion: Motion, path: str | os.PathLike[str], what: str) -> None:
     """Draw one picture of a planned motion into a file."""
     kind = choice(what, "what", ("proof", "joints", "tool", "path"))
@@ -41,7 +71,10 @@ def save_plot(motion: Motion, path: str | os.PathLike[str], what: str) -> None:
             f'path is "{file_name(path)}"; a picture ends in {", ".join(ENDINGS)}.'
         )
     samples = motion.sample(max(0.001, motion.duration / MOST_SAMPLES))
-    save_figure((draw_proof if kind == "proof" else DRAWINGS[kind])(samples, motion), path)
+    if kind == "proof":
+        save_figure(draw_proof(samples, motion), path)
+    else:
+        save_figure(DRAWINGS[kind](samples, Subject.of(motion)), path)
 
 
 def save_figure(figure: Figure, path: str | os.PathLike[str]) -> None:
@@ -51,17 +84,17 @@ def save_figure(figure: Figure, path: str | os.PathLike[str]) -> None:
         figure.savefig(file_name(path), dpi=PIXELS_PER_INCH)
 
 
-def draw_joints(samples: Samples, motion: Motion) -> Figure:
+def draw_joints(samples: Samples, of: Subject) -> Figure:
     """Angles, velocities, accelerations and jerks of every joint over one time axis.
 
     Parameters
     ----------
     samples : Samples
         What to draw: planned or executed.
-    motion : Motion
+    of : Subject
         Whose limits and name to show.
     """
-    robot = motion.robot
+    robot = of.robot
     n = robot.joints
     width = max(7.0, 2.7 * n)
     figure = Figure(figsize=(width, 8.6))
@@ -74,7 +107,7 @@ def draw_joints(samples: Samples, motion: Motion) -> Figure:
         wspace=0.5 if any(robot.prismatic) else 0.34,  # mixed units: labels between the columns
         hspace=0.22,
     )
-    figure.suptitle(_title(motion, "joints against their limits"), fontweight="bold")
+    figure.suptitle(_title(of, "joints against their limits"), fontweight="bold")
     axes = figure.subplots(4, n, sharex=True, squeeze=False)
     limits = robot.limits
     rows = (
@@ -107,10 +140,10 @@ def draw_joints(samples: Samples, motion: Motion) -> Figure:
     return figure
 
 
-def draw_tool(samples: Samples, motion: Motion) -> Figure:
+def draw_tool(samples: Samples, of: Subject) -> Figure:
     """x, y and z of the tool point with velocity and acceleration, and the speed along the path."""
     figure = Figure(figsize=(11.5, 8.0), layout="constrained")
-    figure.suptitle(_title(motion, "tool point in the base frame"), fontweight="bold")
+    figure.suptitle(_title(of, "tool point in the base frame"), fontweight="bold")
     axes = figure.subplots(3, 4, sharex=True, squeeze=False)
     rows = (
         ("position", "mm", samples.pose[:, :3, 3] * 1e3),
@@ -140,10 +173,10 @@ def draw_tool(samples: Samples, motion: Motion) -> Figure:
     return figure
 
 
-def draw_path(samples: Samples, motion: Motion) -> Figure:
+def draw_path(samples: Samples, of: Subject) -> Figure:
     """Draw the tool's path in space with its approach vectors and the program's points."""
     figure = Figure(figsize=(8.6, 7.6), layout="constrained")
-    figure.suptitle(_title(motion, "path of the tool"), fontweight="bold")
+    figure.suptitle(_title(of, "path of the tool"), fontweight="bold")
     ax = figure.add_subplot(projection="3d")
     points = samples.pose[:, :3, 3]
     span = float(max(np.ptp(points, axis=0).max(), 1e-3))
@@ -158,9 +191,10 @@ def draw_path(samples: Samples, motion: Motion) -> Figure:
         arrow_length_ratio=0.3,
         label="approach vector (tool z)",
     )
-    targets = _target_points(motion)
-    ax.plot(*targets.T, color=SWEEP, lw=1.0, ls="--", label="straight between the points")
-    ax.scatter(*targets.T, color=LIMIT, s=34, depthshade=False, label="points of the program")
+    targets = of.points
+    if len(targets):
+        ax.plot(*targets.T, color=SWEEP, lw=1.0, ls="--", label="straight between the points")
+        ax.scatter(*targets.T, color=LIMIT, s=34, depthshade=False, label="points of the program")
     for point, label in _labels(targets, 1e-3 * span):
         ax.text(*(point + 0.03 * span), label, fontsize=11, weight="bold")
     low, high = _cube_around(np.vstack([points, targets]))
@@ -176,22 +210,22 @@ def draw_path(samples: Samples, motion: Motion) -> Figure:
     return figure
 
 
-DRAWINGS: dict[str, Callable[[Samples, Motion], Figure]] = {
+DRAWINGS: dict[str, Callable[[Samples, Subject], Figure]] = {
     "joints": draw_joints,
     "tool": draw_tool,
     "path": draw_path,
 }
 
 
-def drawings_for(motion: Motion) -> list[str]:
+def drawings_for(robot: Robot) -> list[str]:
     """Name the pictures that this robot allows."""
-    return ["joints", "tool", "path"] if motion.robot.has_kinematics else ["joints"]
+    return ["joints", "tool", "path"] if robot.has_kinematics else ["joints"]
 
 
-def _title(motion: Motion, what: str) -> str:
-    robot, program = motion.robot.name, motion.program.name
+def _title(of: Subject, what: str) -> str:
+    robot, program = of.robot.name, of.name
     name = robot if program in (robot, "program") else f"{robot}, {program}"
-    return f"{name}: {what} ({motion.duration:.3f} s)"
+    return f"{name}: {what} ({of.duration:.3f} s)"
 
 
 def _joint_name(robot: Robot, joint: int) -> str:

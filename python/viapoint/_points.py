@@ -125,6 +125,26 @@ class PointList:
         self[name]
         return self._points[name].frame
 
+    def pose(self, name: str) -> Vector:
+        """Return pose_base_tool of a point as it was taught, (4, 4) [m].
+
+        Raises
+        ------
+        BadArgumentError
+            No such point, or a robot without kinematics.
+        """
+        return self.robot.fk(self[name])
+
+    def branch(self, name: str) -> _core.Configuration:
+        """Return how the arm stands at a point: shoulder, elbow, wrist and whole turns.
+
+        Raises
+        ------
+        BadArgumentError
+            No such point, or a robot without kinematics.
+        """
+        return self.robot.configuration(self[name])
+
     def joints_in(self, name: str, frames: Iterable[Frame]) -> Vector:
         """Joints of a point whose frame stands elsewhere now.
 
@@ -139,15 +159,16 @@ class PointList:
         Returns
         -------
         ndarray, (n,)
-            Joints [rad or m] that hold the tool in the frame as it was taught: the solution nearest
-            to the taught joints.
+            Joints [rad or m] that hold the tool in the frame as it was taught, on the branch that
+            it was taught on: of its solutions the nearest to the taught joints.
 
         Raises
         ------
         BadArgumentError
             No such point.
         UnreachableError, OutsideLimitsError
-            The point cannot be reached where its frame stands now, by the point's name.
+            The point cannot be reached where its frame stands now, or not on its branch, by the
+            point's name.
         """
         q = self[name]
         taught = self._points[name].frame
@@ -155,8 +176,13 @@ class PointList:
         if taught is None or now is None or np.array_equal(now.pose, taught.pose):
             return q
         target = now.to_base(taught.from_base(self.robot.fk(q)))
+        stood = self.branch(name)
+        kept = _core.Configuration(shoulder=stood.shoulder, elbow=stood.elbow, wrist=stood.wrist)
         try:
-            return self.robot.ik(target, near=q)
+            nearest = self.robot.ik(target, near=q)
+            if self.robot.configuration(nearest).fits(kept):
+                return nearest
+            return self.robot.ik(target, near=q, config=kept)
         except PoseError as error:
             raise type(error)(
                 f'point "{name}" in the frame "{now.name}" as it stands now: {error.message}',

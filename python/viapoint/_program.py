@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Iterator
 from pathlib import Path
+from typing import TypedDict
 
 from . import _core, _session
 from ._arguments import ArrayLike, file_name, number
@@ -16,6 +17,22 @@ from ._work_steps import WorkSteps
 from ._zone import ZoneLike
 from .errors import BadArgumentError, BadProgramError, MotionError
 from .frames import Frame, Tool
+
+
+class ProgramOptions(TypedDict, total=False):
+    """What a `Program` may be told besides its robot and its start."""
+
+    speed: float | None
+    acceleration: float | None
+    angular_speed: float | None
+    angular_acceleration: float | None
+    scale: float | None
+    zone: ZoneLike
+    name: str
+    position_tolerance: float
+    angle_tolerance: float
+    frame: Frame | ArrayLike | None
+    tool: Tool | ArrayLike | None
 
 
 class Program(WorkSteps):

@@ -11,6 +11,8 @@ from ._job import Job
 from ._motion import Motion
 from ._program import Program
 from ._report import Report
+from ._stream import Stream
+from ._stream_job import StreamJob
 from .errors import MotionError
 
 
@@ -51,15 +53,20 @@ class Recorder(_session.Session):
         """Keep the report."""
         self.checks.append((program, report))
 
-    def started(self, motion: Motion, job: Job) -> None:
+    def started(self, job: Job) -> None:
         """Keep the run."""
         self.runs.append(job)
 
     @property
+    def streams(self) -> list[StreamJob]:
+        """The runs of streams: they have no motion."""
+        return [job for job in self.runs if isinstance(job, StreamJob)]
+
+    @property
     def chosen(self) -> list[Motion]:
-        """The motions that were run; where none was, all that were planned."""
+        """The motions that were run; where nothing was, all that were planned."""
         if self.runs:
-            return [job.motion for job in self.runs]
+            return [job.motion for job in self.runs if not isinstance(job, StreamJob)]
         latest = {id(motion.program): motion for motion in self.motions}
         return list(latest.values())
 
@@ -69,12 +76,23 @@ class Recorder(_session.Session):
         return list({id(program): program for program, _ in self.checks}.values())
 
     def report_of(self, program: Program) -> Report:
-        """Return what the script last heard of a program; where it was refused, all of it."""
+        """Return what the script last heard of a program; where it was refused, all of it.
+
+        Of a stream, which is checked step by step, everything.
+        """
         reports = [report for checked, report in self.checks if checked is program]
+        if isinstance(program, Stream):
+            return Report([problem for report in reports for problem in report])
         if any(refused is program for refused, _ in self.refusals):
             whole = program.check()
             return reports[-1] if whole.ok else whole
         return reports[-1]
+
+    def duration_of(self, program: Program) -> float | None:
+        """Return how long a program takes, as it was planned or streamed last [s]."""
+        planned = [motion.duration for motion in self.motions if motion.program is program]
+        streamed = [job.duration for job in self.streams if job.stream is program]
+        return (planned + streamed)[-1] if planned or streamed else None
 
 
 class ProgressRecorder(Recorder):

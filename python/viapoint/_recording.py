@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import io
 import os
 import time
 from collections.abc import Callable
@@ -15,16 +14,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from . import _core
 from ._arguments import ArrayLike, Vector, file_name, number, numbers_of
 from ._log_files import robot_in
 from ._measure import Measure
+from ._observed import Tape
 from ._playback import Playback, Stage
 from ._robot import Robot, require_robot, require_within_limits
 from ._run_log import RunLog
 from ._sample_table import read_table
 from ._smoothing import SmoothCurve, reversals, smooth
 from ._virtual import VirtualLoop
+from ._written_aside import written_aside
 from ._zone import Zone
 from .errors import (
     BadArgumentError,
@@ -35,10 +35,12 @@ from .errors import (
 )
 
 if TYPE_CHECKING:
-    from ._arm import Loop
+    from ._loop import Loop
 
 _PATIENCE = 1.0
 """How much longer a recording may take than it is long [s]."""
+_LOOK = 0.01
+"""So often a recording fetches what has come [s]."""
 _QUICKEST = 0.05
 """Two reversals nearer than this in time [s] are none that a hand makes."""
 
@@ -174,10 +176,9 @@ class Recording:
         name = file_name(path)
         if not name.endswith(".npz"):
             raise BadArgumentError(f'path is "{name}"; samples of a recording go into .npz.')
-        buffer = io.BytesIO()
         robot = np.array(self.robot._core.to_yaml())
-        np.savez_compressed(buffer, robot=robot, t=self.t, q=self.q, outputs=self.outputs)
-        _core.write_file_atomically(name, buffer.getvalue())
+        with written_aside(name) as file:
+            np.savez_compressed(file, robot=robot, t=self.t, q=self.q, outputs=self.outputs)
 
     def __len__(self) -> int:
         """Count the samples."""
@@ -327,39 +328,36 @@ def record(
 ) -> Recording:
     """Take what every cycle measures; see `Arm.record`."""
     longest = number(seconds, "seconds", "s", above=0.0)
-    seen: list[tuple[int, Vector, int]] = []
-
-    def look() -> bool:
-        """Take the last cycle; False where it was taken before."""
-        stamp, q, _, outputs = loop.observed
-        is_new = not seen or stamp > seen[-1][0]
-        if is_new:
-            seen.append((stamp, q, outputs))
-        return is_new
+    tape = Tape(loop)
 
     def is_over() -> bool:
-        return 1e-9 * (seen[-1][0] - seen[0][0]) >= longest or (until is not None and until())
+        return tape.seconds >= longest or (until is not None and until())
 
-    look()
     if isinstance(loop, VirtualLoop):
-        loop.look = look
+        loop.look = tape.fetch
         try:
+            loop.pass_cycles(1)
             while not is_over():
+                before = tape.count
                 loop.pass_cycles(1)
+                if tape.count == before:  # a loop that has failed has no more cycles
+                    break
         finally:
             loop.look = None
     else:
         # A loop that has failed has no more cycles.
         end = time.monotonic() + longest + _PATIENCE
         while time.monotonic() < end:
-            if look() and is_over():
+            if tape.fetch() and is_over():
                 break
-            time.sleep(0.5 * period)
-    if len(seen) < 2:
-        seen.append((seen[0][0] + round(1e9 * period), *seen[0][1:]))
-    t = [1e-9 * (stamp - seen[0][0]) for stamp, _, _ in seen]
-    outputs = np.array([on for _, _, on in seen], dtype=np.uint64)
-    return Recording.of_samples(robot, t, [q for _, q, _ in seen], outputs)
+            time.sleep(max(period, _LOOK))
+        tape.fetch()
+    if tape.count < 2:
+        there = loop.measured
+        return Recording.of_samples(robot, [0.0, period], [there, there])
+    t, q, outputs = tape.samples()
+    count = min(int(np.searchsorted(t, longest)) + 1, len(t))
+    return Recording.of_samples(robot, t[:count], q[:count], outputs[:count])
 
 
 def _moves_between(seen: Vector) -> tuple[int, int]:

@@ -8,13 +8,15 @@ import os
 import socket
 import threading
 import time
+import weakref
 from collections.abc import Iterator
 
 import numpy as np
 
 from . import _core, _wire
 from ._arguments import Vector
-from ._remote_run import LOOK, RemoteExecution
+from ._observed import Observed
+from ._remote_run import LOOK, RemoteExecution, columns_of
 from ._remote_stream import RemoteOpenRun
 from ._wire import Message, Wire, message
 from .errors import NotInControlError, UnconnectedError
@@ -23,6 +25,8 @@ _BEATS = 4
 """So often an operator shows in each heartbeat that he is there."""
 _PART = 1 << 19
 """Pieces go in messages of about so many bytes."""
+_POSITIONS = 1 << 16
+"""So many joint values of a hand's way go in a message."""
 _PROOF = 600.0
 """So long [s] the controller may take to prove a motion before it runs it."""
 
@@ -78,8 +82,10 @@ class RemoteLoop:
         self.token = ""
         self._heart: Heart | None = None
         self._started: set[int] = set()
+        self._held: weakref.WeakSet[RemoteExecution] = weakref.WeakSet()
+        """Runs begun here that the script has still hold of."""
         self._sending = threading.Lock()
-        self.followed: RemoteOpenRun | None = None
+        self.followed: RemoteOpenRun
         self.is_open = True
         if not watch:
             self._take_control()
@@ -109,19 +115,26 @@ class RemoteLoop:
 
     def run(self, motion: _core.PlannedMotion) -> RemoteExecution:
         """Send the motion, have it proven there, and begin it."""
-        return RemoteExecution(self, self._begin("Run", motion))
+        run = RemoteExecution(self, self._begin("Run", motion))
+        self._held.add(run)
+        return run
 
     def follow(self, motion: _core.PlannedMotion) -> RemoteOpenRun:
         """Do the same with a motion that gets longer while it runs."""
         self.followed = RemoteOpenRun(self, self._begin("Follow", motion))
+        self._held.add(self.followed)
         return self.followed
 
     def _begin(self, method: str, motion: _core.PlannedMotion) -> int:
+        last = self.last_run
+        for run in list(self._held):
+            if run.number < last:  # the controller keeps two runs
+                run.keep()
+        # Ctrl-C may come between the beginning and the answer: such a run is stopped at the end.
+        self._started.add(last + 1)
         with self.sent(motion):
             request = message("RunRequest", token=self.token, fingerprint=self.about.fingerprint)
-            number = int(self.call(method, request, "RunReply", patience=_PROOF).run)
-        self._started.add(number)
-        return number
+            return int(self.call(method, request, "RunReply", patience=_PROOF).run)
 
     @contextlib.contextmanager
     def sent(self, motion: _core.PlannedMotion) -> Iterator[None]:
@@ -150,6 +163,16 @@ class RemoteLoop:
         request = message("SetInputsRequest", token=self.token, mask=changed, values=on)
         self.call("SetInputs", request, "SetInputsReply")
 
+    @property
+    def outputs(self) -> int:
+        """What the drive was last told, bit i for output i."""
+        return int(self._state().outputs)
+
+    def switch_outputs(self, changed: int, on: int) -> None:
+        """Switch outputs by hand."""
+        request = message("SetOutputsRequest", token=self.token, mask=changed, values=on)
+        self.call("SetOutputs", request, "SetOutputsReply")
+
     def jog(self, velocity: Vector) -> None:
         """Turn the joints for the next 250 ms."""
         request = message("JogRequest", token=self.token, velocity=velocity.tolist())
@@ -171,10 +194,44 @@ class RemoteLoop:
         return np.array(self._state().measured)
 
     @property
-    def observed(self) -> tuple[int, Vector, int, int]:
-        """Of the last cycle: its stamp [ns], joints (n,), inputs and outputs."""
-        now = self._state()
-        return now.stamp, np.array(now.measured), now.inputs, now.outputs
+    def newest_cycle(self) -> int:
+        """Number of the last cycle."""
+        return int(self._state().cycle)
+
+    def observed(self, from_cycle: int, most: int) -> Observed:
+        """Ask what was measured from a cycle on; the controller sends 1000 at once."""
+        request = message("GetCyclesRequest", from_cycle=from_cycle, count=most)
+        part = self.call("GetCycles", request, "CyclesPart")
+        return (
+            np.array(part.cycle, dtype=np.uint64),
+            np.array(part.stamp, dtype=np.int64),
+            np.array(part.measured).reshape(-1, self.joints),
+            np.array(part.inputs, dtype=np.uint64),
+            np.array(part.outputs, dtype=np.uint64),
+        )
+
+    def guide(self, positions: list[Vector]) -> None:
+        """Move a simulated arm by hand, a position (n,) a cycle."""
+        rows = _POSITIONS // self.joints
+        with self._sending:
+            for offset in range(0, len(positions), rows):
+                request = message(
+                    "GuideRequest",
+                    token=self.token,
+                    offset=offset,
+                    positions=np.concatenate(positions[offset : offset + rows]),
+                    begins=offset + rows >= len(positions),
+                )
+                self.call("Guide", request, "GuideReply")
+
+    def let_go(self) -> None:
+        """Take the hand off the simulated arm."""
+        self.call("LetGo", message("LetGoRequest", token=self.token), "LetGoReply")
+
+    @property
+    def guided(self) -> bool:
+        """True while a hand moves the arm."""
+        return bool(self._state().guided)
 
     @property
     def position(self) -> Vector:
@@ -201,6 +258,12 @@ class RemoteLoop:
         """What has failed; empty: nothing."""
         return str(self._state().fault)
 
+    def fault_cycles(self) -> _core.Log:
+        """Fetch the last cycles before the newest fault."""
+        request = message("GetFaultCyclesRequest")
+        part = self.call("GetFaultCycles", request, "LogPart")
+        return _core.Log.of_columns(columns_of([part], self.joints))
+
     @property
     def shortcomings(self) -> list[str]:
         """Real-time rights that the controller could not have."""
@@ -221,13 +284,29 @@ class RemoteLoop:
         """Number of the controller's last run; 0: none yet."""
         return int(self._state().run)
 
+    def found(self, number: int) -> RemoteExecution:
+        """Return the controller's run of that number, whoever began it."""
+        return RemoteExecution(self, number)
+
+    @staticmethod
+    def is_run(execution: object, number: int) -> bool:
+        """Tell whether an execution is the controller's run of that number."""
+        return isinstance(execution, RemoteExecution) and execution.number == number
+
     def close(self) -> None:
-        """Give up control and hang up; a run that was begun here is stopped on its path first."""
+        """Give up control and hang up; a run that was begun here is stopped on its path first.
+
+        The logs of runs that the script has still hold of are fetched.
+        """
         if not self.is_open:
             return
         self.is_open = False
         try:
             self._leave()
+            for run in list(self._held):
+                run.keep()
+        except UnconnectedError:
+            pass  # what was fetched before stays
         finally:
             if self._heart is not None:
                 self._heart.stop()

@@ -2,27 +2,24 @@
 
 from __future__ import annotations
 
-from urllib.parse import urlsplit
+from typing import TYPE_CHECKING
 
-from . import _core, _session
 from ._arm import Arm
-from ._drives import SimulatedDrive
-from ._job import Job
+from ._job import Execution, Job
 from ._motion import Motion
-from ._remote import RemoteLoop
-from ._remote_run import RemoteExecution
 from ._robot import Robot
 from ._run_log import RunLog
-from ._tls import TlsFiles
 from ._virtual import VirtualLoop
-from ._wire import Wire
 from .errors import BadArgumentError
+
+if TYPE_CHECKING:
+    from ._remote import RemoteLoop
 
 
 class FoundJob(Job):
     """A run that another program began: all of `Job` but the motion, which only that one has."""
 
-    def __init__(self, execution: RemoteExecution, robot: Robot, period: float) -> None:
+    def __init__(self, execution: Execution, robot: Robot, period: float) -> None:
         self._execution = execution
         self._robot = robot
         self._period = period
@@ -45,7 +42,11 @@ class FoundJob(Job):
 
     @property
     def log(self) -> RunLog:
-        """Every cycle so far; complete once the job has ended."""
+        """Every cycle so far; complete once the job has ended.
+
+        Poses computed from it are those of the robot's own tool: which tools the program set, only
+        the program that began the run knows.
+        """
         return RunLog.of_robot(self._execution.log(), self._robot, self._period)
 
 
@@ -57,70 +58,30 @@ class RemoteArm(Arm):
     paused, for the next program that connects: `job` is the run then, to be resumed or stopped.
     """
 
-    def __init__(self, robot: Robot, loop: RemoteLoop, cycle: float) -> None:
+    def __init__(self, robot: Robot, loop: RemoteLoop | VirtualLoop, cycle: float) -> None:
         super().__init__(robot, loop, cycle)
-        self._remote = loop
+        self._remote = None if isinstance(loop, VirtualLoop) else loop
+        """None in virtual time."""
 
     @property
     def job(self) -> Job | None:
         """The controller's run under way, or its last one, whoever began it; None: none yet."""
+        if self._remote is None:
+            return super().job
         number = self._remote.last_run
-        if number == 0:
-            return None
-        for job in self._jobs:
-            execution = job._execution
-            if isinstance(execution, RemoteExecution) and execution.number == number:
+        for job in self._runs:
+            if self._remote.is_run(job._execution, number):
                 return job
-        return FoundJob(RemoteExecution(self._remote, number), self.robot, self._cycle)
+        return (
+            None if number == 0 else FoundJob(self._remote.found(number), self.robot, self._cycle)
+        )
 
     @property
     def operator(self) -> str:
-        """Who has control of the arm; empty: nobody."""
-        return self._remote.operator
+        """Who has control of the arm; empty: nobody, or it is a stand-in in virtual time."""
+        return "" if self._remote is None else self._remote.operator
 
     @property
     def control_loss(self) -> str:
         """How control was lost last, in a sentence; empty: it never was."""
-        return self._remote.control_loss
-
-
-def connect_remote(url: str, robot: Robot | None, watch: bool, tls: TlsFiles | None) -> Arm:
-    """Connect to the controller of a ``tcp://`` url, as `connect` says."""
-    wire = Wire(_address_of(url), tls)
-    virtual = _session.current().virtual
-    try:
-        loop = RemoteLoop(wire, watch=watch or virtual)
-    except BaseException:
-        wire.close()
-        raise
-    try:
-        there = Robot(_core.robot_from_yaml(loop.about.description, url))
-        if robot is not None and robot.fingerprint != there.fingerprint:
-            raise BadArgumentError(
-                f'The arm at {url} is "{there.name}", robot is "{robot.name}" or has other limits.',
-                ways_out=["Leave robot out, and use arm.robot."],
-            )
-        if virtual:
-            stand_in = VirtualLoop(
-                there, SimulatedDrive().standing_at(loop.position), loop.about.cycle
-            )
-            loop.close()
-            return Arm(there, stand_in, loop.about.cycle)
-        return RemoteArm(there, loop, loop.about.cycle)
-    except BaseException:
-        loop.close()
-        raise
-
-
-def _address_of(url: str) -> str:
-    parts = urlsplit(url)
-    try:
-        host, port = parts.hostname, parts.port
-    except ValueError:
-        host, port = None, None
-    if not host or port is None or parts.path or parts.query or parts.username:
-        raise BadArgumentError(
-            f'url is "{url}"; a controller\'s is "tcp://<host>:<port>".',
-            ways_out=['For example connect("tcp://127.0.0.1:7420").'],
-        )
-    return f"[{host}]:{port}" if ":" in host else f"{host}:{port}"
+        return "" if self._remote is None else self._remote.control_loss

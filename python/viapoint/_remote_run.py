@@ -24,14 +24,33 @@ _RECORDS = 1000
 
 
 class RemoteExecution:
-    """One run of the controller's: the execution of a `Job`."""
+    """One run of the controller's: the execution of a `Job`.
+
+    The controller forgets old runs; what is kept here stays.
+    """
 
     def __init__(self, loop: RemoteLoop, number: int) -> None:
         self._loop = loop
         self.number = number
+        self._end: Message | None = None
+        """How the run was, once it has ended."""
+        self._kept: tuple[_core.Log, Message] | None = None
 
     def _look(self) -> Message:
+        if self._end is None:
+            look = self._ask()
+            if not look.ended:
+                return look
+            self._end = look
+        return self._end
+
+    def _ask(self) -> Message:
         return self._loop.call("GetRun", message("GetRunRequest", run=self.number), "RunState")
+
+    def keep(self) -> None:
+        """Fetch the log and the figures, while the controller has them, unless that was done."""
+        if self._kept is None and self._look().ended:
+            self._kept = (self._fetched_log(), self._fetched_report())
 
     def wait(self, timeout: float) -> bool:
         """Wait for the end, at most `timeout` [s].
@@ -128,24 +147,31 @@ class RemoteExecution:
         return int(self._look().move)
 
     def log(self) -> _core.Log:
-        """Fetch every cycle so far, in parts."""
+        """Return every cycle so far."""
+        return self._fetched_log() if self._kept is None else self._kept[0]
+
+    def report(self) -> Message:
+        """Cycles, overruns, latencies and computing times so far."""
+        return self._fetched_report() if self._kept is None else self._kept[1]
+
+    def _fetched_log(self) -> _core.Log:
+        """Fetch the log in parts."""
         parts: list[Message] = []
         start = 0
         while True:
             request = message("GetLogRequest", run=self.number, from_cycle=start, count=_RECORDS)
             part = self._loop.call("GetLog", request, "LogPart")
             if not part.cycle:
-                return _core.Log.of_columns(_columns(parts, self._loop.joints))
+                return _core.Log.of_columns(columns_of(parts, self._loop.joints))
             parts.append(part)
             start = part.cycle[-1] + 1
 
-    def report(self) -> Message:
-        """Cycles, overruns, latencies and computing times so far."""
+    def _fetched_report(self) -> Message:
         request = message("GetReportRequest", run=self.number)
         return self._loop.call("GetReport", request, "RunReport")
 
 
-def _columns(parts: list[Message], joints: int) -> dict[str, npt.NDArray[Any]]:
+def columns_of(parts: list[Message], joints: int) -> dict[str, npt.NDArray[Any]]:
     """Put the parts of a log together, column by column."""
     kinds: dict[str, type[np.generic]] = {
         **dict.fromkeys(("cycle", "outputs"), np.uint64),

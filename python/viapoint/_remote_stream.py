@@ -18,7 +18,7 @@ _FRESH = 1e-3
 
 
 class RemoteOpenRun(RemoteExecution):
-    """What hands over a stream's motion to the controller: the `OpenExecution` of a stream."""
+    """What hands over a stream's motion to the controller: a `Follower` in C++."""
 
     def __init__(self, loop: RemoteLoop, number: int) -> None:
         super().__init__(loop, number)
@@ -36,8 +36,8 @@ class RemoteOpenRun(RemoteExecution):
                 self._asked = now
             return self._answer
 
-    def _look(self) -> Message:
-        return self._look_ahead().run if self._loop.has_control else super()._look()
+    def _ask(self) -> Message:
+        return self._look_ahead().run if self._loop.has_control else super()._ask()
 
     def lengthen(self, motion: _core.PlannedMotion, leave: float) -> None:
         """Hand over what follows: it begins at `leave` [s] of the motion before, or at its end."""

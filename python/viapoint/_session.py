@@ -39,8 +39,8 @@ class Session:
     def refused(self, program: Program, error: MotionError) -> None:
         """Hear that a program could not be planned."""
 
-    def started(self, motion: Motion, job: Job) -> None:
-        """Hear that a motion has begun."""
+    def started(self, job: Job) -> None:
+        """Hear that a run, of a program or of a stream, has begun."""
 
     def waiting(self, job: Job) -> None:
         """Hear, about 20 times a second, that the script waits for a job."""

@@ -3,22 +3,23 @@
 from __future__ import annotations
 
 import functools
+import itertools
 import threading
 import time
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, Protocol, TypeAlias, cast
+from typing import TYPE_CHECKING, Concatenate, ParamSpec, Protocol, TypeAlias, cast
 
-from . import _core
-from ._job import ENDED, Execution, Job
-from ._program import Program
+from . import _core, _session
+from ._arguments import ArrayLike
+from ._job import ENDED, Execution
+from ._program import Program, ProgramOptions
 from ._proven import Tools, tools_of
 from ._report import Report
 from ._robot import Robot
-from ._run_log import RunLog
+from ._stream_job import LateStep, StreamJob
 from ._virtual import VirtualLoop
-from .errors import BadProgramError, BusyError, StoppedError
+from .errors import BadProgramError, BusyError, MotionError, StoppedError
 
 if TYPE_CHECKING:
     from ._chunks import Chunk
@@ -28,6 +29,8 @@ _PERIOD = 0.02
 """How often a stream looks whether more is due [s]."""
 _ROOM = 0.005
 """How often a step that has to wait looks for room [s]."""
+_TOLD = 10
+"""After so many looks for room whoever listens hears how far the run is."""
 _MARGIN, _FAR_MARGIN = 0.05, 0.1
 """What planning and handing over may take of the motion under way [s], here and elsewhere."""
 
@@ -35,7 +38,7 @@ _MARGIN, _FAR_MARGIN = 0.05, 0.1
 class OtherLoop(Protocol):
     """A loop in another process."""
 
-    followed: Execution | None
+    followed: Execution
     """The run that `follow` has begun last."""
 
     @property
@@ -44,63 +47,6 @@ class OtherLoop(Protocol):
 
 StreamLoop: TypeAlias = _core.ControllerLoop | VirtualLoop | OtherLoop
 _Told = ParamSpec("_Told")
-
-
-@dataclass(frozen=True)
-class LateStep:
-    """A step that came when the arm had nothing else to do any more.
-
-    Attributes
-    ----------
-    step : int
-        Index of the step in the stream, from 0.
-    file : str
-        The script.
-    line : int
-        Its line, from 1.
-    waited : float
-        How long the arm waited at rest [s]; 0 where it only slowed down to rest.
-    """
-
-    step: int
-    file: str
-    line: int
-    waited: float
-
-
-class StreamJob(Job):
-    """The run of a stream: a `Job` whose motion gets longer. Threads: any.
-
-    Its `duration` is that of what has been handed to the arm, and its state ``"waiting"`` where the
-    arm rests at the end of that. It has no `motion`.
-    """
-
-    def __init__(self, execution: Execution, stream: Stream, period: float) -> None:
-        self._execution = execution
-        self._period = period
-        self._seen_to_end = False
-        self._stream = stream
-
-    def __repr__(self) -> str:
-        """Name, state and progress."""
-        return (
-            f"<StreamJob {self.name!r}, {self.state}, "
-            f"{self.nominal_time:.3f} of {self.duration:.3f} s so far>"
-        )
-
-    @property
-    def name(self) -> str:
-        """Name of the stream."""
-        return self._stream.name
-
-    @property
-    def log(self) -> RunLog:
-        """Every cycle so far; complete once the job has ended."""
-        stream = self._stream
-        core = self._execution.log()
-        return RunLog(
-            **core.columns(), robot=stream.robot, period=self._period, core=core, tools=stream.tools
-        )
 
 
 class Stream(Program):
@@ -119,9 +65,15 @@ class Stream(Program):
     """True once steps are run as they are told."""
 
     def __init__(
-        self, robot: Robot, loop: StreamLoop, period: float, ahead: int, told: dict[str, Any]
+        self,
+        robot: Robot,
+        loop: StreamLoop,
+        period: float,
+        ahead: int,
+        start: ArrayLike,
+        options: ProgramOptions,
     ) -> None:
-        super().__init__(robot, **told)
+        super().__init__(robot, start=start, **options)
         self._loop = loop
         self._period = period
         self._ahead = ahead
@@ -137,11 +89,12 @@ class Stream(Program):
                 loop.follow, robot._core, self._core, margin=_FAR_MARGIN
             )
         self._job: StreamJob | None = None
+        self._beginning = threading.Lock()
         self._trouble: BaseException | None = None
         self._closed = threading.Event()
         self._is_open = True
         if isinstance(loop, VirtualLoop):
-            loop.feed = self._stream.hand_over
+            loop.feed = self._feed
         else:
             self._thread = threading.Thread(
                 target=self._keep_on, name="viapoint-stream", daemon=True
@@ -176,23 +129,31 @@ class Stream(Program):
         MotionError
             Why it could not begin.
         """
-        if self._begun is None and not self._closed.is_set():
+        if self.begun is None and not self._closed.is_set():
             self._stream.hand_over()
-        return self._begun
+        return self.begun
+
+    def _feed(self) -> None:
+        """Hand over what is due, and have virtual time know the run that this may begin."""
+        self._stream.hand_over()
+        self.begun  # noqa: B018 -- asking tells whoever listens
 
     @property
-    def _begun(self) -> StreamJob | None:
-        """The run, if the motion has begun."""
-        if self._job is None and (core := self._stream.job) is not None:
-            self._job = StreamJob(self._executed(core), self, self._period)
-        return self._job
+    def begun(self) -> StreamJob | None:
+        """The run, if the motion has begun; asking begins nothing."""
+        with self._beginning:
+            if self._job is None and self._stream.state is not None:
+                self._job = StreamJob(self._execution(), self, self._period)
+                _session.current().started(self._job)
+            return self._job
 
-    def _executed(self, core: _core.Job) -> Execution:
-        if isinstance(self._loop, VirtualLoop):
-            return self._loop.executed(core)
-        if isinstance(self._loop, _core.ControllerLoop) or self._loop.followed is None:
-            return core
-        return self._loop.followed
+    def _execution(self) -> Execution:
+        """Return what the loop has begun."""
+        core = self._stream.job
+        if core is not None:
+            loop = self._loop
+            return loop.streamed(core) if isinstance(loop, VirtualLoop) else core
+        return cast("OtherLoop", self._loop).followed
 
     @property
     def tools(self) -> Tools:
@@ -220,8 +181,7 @@ class Stream(Program):
     @property
     def ended(self) -> bool:
         """True once no step can follow: the stream was closed, or its run is over."""
-        core = self._stream.job
-        return self._closed.is_set() or (core is not None and core.state in ENDED)
+        return self._closed.is_set() or self._stream.state in ENDED
 
     def take_corners(self) -> list[_core.Corner]:
         """Return what became of the zones decided since the last call, the newest 1000."""
@@ -229,7 +189,13 @@ class Stream(Program):
 
     def take_warnings(self) -> Report:
         """Return the warnings met since the last call, the newest 1000."""
-        return Report(self._stream.take_warnings())
+        return self._tell_warnings()
+
+    def _tell_warnings(self) -> Report:
+        """Have whoever listens hear them, too."""
+        report = Report(self._stream.take_warnings())
+        _session.current().checked(self, report)
+        return report
 
     def close(self, *, stop: bool = False) -> None:
         """Tell that no step follows, and wait for the end.
@@ -257,10 +223,11 @@ class Stream(Program):
                 is_told = True
         finally:
             try:
-                if (job := self._begun) is not None:
+                if (job := self.begun) is not None:
                     job.finish(stop=not is_told)
             finally:
                 self._hand_over_no_more()
+                self._tell_warnings()
         if self._trouble is not None and not stop:
             raise self._trouble
 
@@ -284,28 +251,30 @@ class Stream(Program):
         """Refuse: a stream is handed to the arm in chunks by itself."""
         raise _no_program("planned")
 
-    def _make_room(self) -> None:
-        """Wait until the arm has fewer steps before it than allowed."""
-        while True:
+    def _make_room(self, most: int) -> None:
+        """Wait until the arm has fewer than `most` steps before it."""
+        for turn in itertools.count():
             if self._trouble is not None:
                 raise self._trouble
             if self._closed.is_set():
                 raise BusyError(
                     "The stream has ended: no step can follow.", ways_out=["Begin another stream."]
                 )
-            core = self._stream.job
-            if core is not None and core.state in ENDED:
+            if self._stream.state in ENDED and (job := self.begun) is not None:
+                job.wait()  # raises what has failed, if that is why
                 raise StoppedError(
-                    f"The run of the stream is over ({core.state}): no step can follow.",
-                    move=core.move,
+                    f"The run of the stream is over ({job.state}): no step can follow.",
+                    move=job.move,
                     ways_out=["Begin another stream where the arm rests."],
                 )
-            if self._stream.steps_ahead < self._ahead:
+            if self._stream.steps_ahead < most:
                 return
             # Steps that move nothing leave the arm waiting for others, however many they are.
             self._stream.hand_over()
             if self._stream.wants_steps:
                 return
+            if turn % _TOLD == 0 and (job := self.begun) is not None:
+                _session.current().waiting(job)
             if not isinstance(self._loop, VirtualLoop):
                 time.sleep(_ROOM)
             elif self._loop.pass_cycles(_virtual_room(self._period)) == 1:
@@ -328,7 +297,7 @@ class Stream(Program):
                 self._stream.hand_over()
             except BaseException as error:  # noqa: BLE001 -- raised where the script tells a step
                 self._trouble = error
-                if (job := self._begun) is not None:
+                if (job := self.begun) is not None:
                     job.stop()
                 return
 
@@ -350,11 +319,17 @@ def _streamed(
 ) -> Callable[Concatenate[Stream, _Told], Stream]:
     @functools.wraps(builder)
     def tell(self: Stream, *args: _Told.args, **options: _Told.kwargs) -> Stream:
-        if self._is_open:
-            self._make_room()
-        builder(self, *args, **options)
-        if self._is_open:
+        if not self._is_open:
+            builder(self, *args, **options)
+            return self
+        # An output that waited would come too late for a place before the end of its move.
+        self._make_room(self._ahead * (2 if builder is Program.set_do else 1))
+        try:
+            builder(self, *args, **options)
             self._hand_on()
+        except MotionError as error:
+            _session.current().refused(self, error)
+            raise
         return self
 
     return cast("Callable[Concatenate[Stream, _Told], Stream]", tell)

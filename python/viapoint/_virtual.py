@@ -11,13 +11,14 @@ import numpy as np
 from . import _core
 from ._arguments import Vector
 from ._job import ENDED, RunReport
+from ._observed import Observed
 from ._robot import Robot
 from .errors import BusyError
 
 _HOLD = 0.05
-"""A call to jog, and a look at one, let so much time pass [s]: buttons are repeated that often."""
+"""A call to jog, and a look at a jog or a stream, let so much time pass [s], as between calls."""
 _LOOKS = 20
-"""A motion is over after so many looks at it, so that a script which polls gets on."""
+"""A program is over after so many looks at it, so that a script which polls gets on."""
 _SLICE = 5
 """So many cycles pass at most before a stream hands over what is due."""
 
@@ -25,13 +26,23 @@ _SLICE = 5
 class VirtualExecution:
     """One run in virtual time.
 
-    Time does not pass by itself: every look at the run lets a twentieth of the motion pass, and a
-    wait lets pass what it would have waited. Commands take effect in the next cycle.
+    Time does not pass by itself: every look at the run lets some pass, and a wait lets pass what it
+    would have waited. Commands take effect in the next cycle.
+
+    Parameters
+    ----------
+    job : Job
+        The run.
+    loop : VirtualLoop
+        Where it runs.
+    look : int
+        Cycles that pass with every look.
     """
 
-    def __init__(self, job: _core.Job, loop: VirtualLoop) -> None:
+    def __init__(self, job: _core.Job, loop: VirtualLoop, look: int) -> None:
         self._job = job
         self._loop = loop
+        self._cycles = look
 
     @property
     def awaited(self) -> tuple[int, bool, float] | None:
@@ -40,7 +51,7 @@ class VirtualExecution:
 
     def _look(self) -> None:
         if self._job.state not in ENDED:
-            self._loop.pass_cycles(math.ceil(self._job.duration / self._loop.cycle / _LOOKS))
+            self._loop.pass_cycles(self._cycles)
 
     @property
     def state(self) -> str:
@@ -202,9 +213,9 @@ class VirtualLoop:
         self.core.set_inputs(bit, bit if awaited[1] else 0)
         return True
 
-    def executed(self, job: _core.Job) -> VirtualExecution:
-        """Return the run of `job`, which is the one under way."""
-        self._run = VirtualExecution(job, self)
+    def streamed(self, job: _core.Job) -> VirtualExecution:
+        """Return the run of a stream, which has begun; nobody knows how long it will be."""
+        self._run = VirtualExecution(job, self, self._hold)
         return self._run
 
     @property
@@ -216,6 +227,10 @@ class VirtualLoop:
     def fault(self) -> str:
         """What the guard has found, in a sentence; empty while it has found nothing."""
         return self.core.fault
+
+    def fault_cycles(self) -> _core.Log:
+        """Return the last cycles before the fault."""
+        return self.core.fault_cycles()
 
     @property
     def override(self) -> float:
@@ -250,15 +265,29 @@ class VirtualLoop:
         self.core.set_inputs(changed, on)
 
     @property
+    def outputs(self) -> int:
+        """Digital outputs after a while has passed, bit i for output i."""
+        self._look()
+        return self.core.outputs
+
+    def switch_outputs(self, changed: int, on: int) -> None:
+        """Switch outputs by hand."""
+        self.core.switch_outputs(changed, on)
+
+    @property
     def measured(self) -> Vector:
         """What the drive measured last, after a while has passed, (n,)."""
         self._look()
         return self.core.measured
 
     @property
-    def observed(self) -> tuple[int, Vector, int, int]:
-        """Of the last cycle: its stamp [ns], joints (n,), inputs and outputs. No time passes."""
-        return self.core.observed
+    def newest_cycle(self) -> int:
+        """Number of the last cycle. No time passes."""
+        return self.core.newest_cycle
+
+    def observed(self, from_cycle: int, most: int) -> Observed:
+        """Return what was measured from a cycle on. No time passes."""
+        return self.core.observed(from_cycle, most)
 
     def guide(self, positions: list[Vector]) -> None:
         """Move the arm by hand, a position (n,) a cycle."""
@@ -304,7 +333,9 @@ class VirtualLoop:
             What the drive would refuse.
         """
         self.see_to_end()
-        return self.executed(self.core.run(motion))
+        job = self.core.run(motion)
+        self._run = VirtualExecution(job, self, math.ceil(job.duration / self.cycle / _LOOKS))
+        return self._run
 
     def see_to_end(self) -> None:
         """Let the run under way go on to its end.

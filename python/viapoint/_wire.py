@@ -7,6 +7,7 @@ beside the extension.
 from __future__ import annotations
 
 import contextlib
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -22,6 +23,12 @@ from .errors import FileError, MotionError, NotInControlError, UnconnectedError,
 DESCRIPTORS = Path(_core.__file__).parent / "controller.binpb"
 _PACKAGE = "viapoint.v1"
 _PROBLEM = "viapoint-problem-bin"
+_CROWDED = "HTTP status 503"
+"""How gRPC tells of a controller that has no room for one more connection."""
+_FULL = "too many calls wait"
+"""How a controller tells of a call that it has not begun."""
+_AGAIN = 0.02
+"""Such a call is made again after so long [s]."""
 _OPTIONS: list[tuple[str, int]] = [
     ("grpc.enable_http_proxy", 0),
     ("grpc.max_receive_message_length", 1 << 22),
@@ -123,12 +130,16 @@ class Wire:
                 request_serializer=type(request).SerializeToString,
                 response_deserializer=_MESSAGES[reply].FromString,
             )
-        try:
-            return self._calls[method](request, timeout=patience)
-        except grpc.RpcError as error:
-            raise self._translated(error, method) from None
-        except ValueError:  # of a channel that another thread has closed meanwhile
-            raise closed() from None
+        end = time.monotonic() + patience
+        while True:
+            try:
+                return self._calls[method](request, timeout=patience)
+            except grpc.RpcError as error:
+                if time.monotonic() > end or not _found_no_room(error):
+                    raise self._translated(error, method) from None
+            except ValueError:  # of a channel that another thread has closed meanwhile
+                raise closed() from None
+            time.sleep(_AGAIN)
 
     def _translated(self, error: grpc.RpcError, method: str) -> MotionError:
         status: Any = error  # a call that failed is its own status; the type does not say so
@@ -138,6 +149,11 @@ class Wire:
                 if status.code() == grpc.StatusCode.PERMISSION_DENIED:
                     return NotInControlError(told.message, ways_out=told.ways_out)
                 return told
+        if _CROWDED in (status.details() or ""):
+            return UnconnectedError(
+                f"The controller at {self.address} has too many connections.",
+                ways_out=["Close those that are not needed, or connect later."],
+            )
         return UnconnectedError(
             f"The controller at {self.address} did not answer {method}: "
             f"{status.code().name}, {status.details()}.",
@@ -148,6 +164,11 @@ class Wire:
         """Hang up."""
         with contextlib.suppress(ValueError):
             self._channel.close()
+
+
+def _found_no_room(error: grpc.RpcError) -> bool:
+    status: Any = error
+    return _FULL in (status.details() or "")
 
 
 def closed() -> UnconnectedError:

@@ -109,10 +109,15 @@ def plot(script: Script, out: Folder = Path("out"), robot: RobotFile = None) -> 
     with _reported(recorder):
         _require_writable(out)
         execute(script, recorder, errors, robot)
+        with writing(out):
+            out.mkdir(parents=True, exist_ok=True)
         taken: set[str] = set()
         for motion in recorder.chosen:
             console.print(*motion_tables(motion))
-            _say_files(write_pictures(motion, out, file_stem(script, motion, taken)))
+            _say_files(write_pictures(motion, out, file_stem(script, motion.program.name, taken)))
+        for job in recorder.streams:
+            console.print(*run_tables(job))
+            _say_files(list(write_run_pictures(job, out, file_stem(script, job.name, taken))))
 
 
 @app.command()
@@ -134,7 +139,7 @@ def export(
         taken: set[str] = set()
         written: list[Path] = []
         for motion in recorder.chosen:
-            path = out / f"{file_stem(script, motion, taken)}.json"
+            path = out / f"{file_stem(script, motion.program.name, taken)}.json"
             motion.program.save(path)
             written.append(path)
             if motions:
@@ -142,6 +147,7 @@ def export(
                 motion.save(written[-1])
         written += _save_own_robots(recorder.chosen, out)
         _say_files(written)
+        _say_streams(recorder, "exported")
 
 
 @app.command()
@@ -171,6 +177,7 @@ def verify(
                     holds &= _say_verdict(path)
             if not recorder.chosen:
                 console.print("The script planned nothing.")
+            _say_streams(recorder, "verified")
     if not holds:
         raise typer.Exit(1)
 
@@ -284,7 +291,7 @@ def _keep_runs(runs: list[Job], out: Path, script: Path) -> bool:
     What of one run cannot be written does not keep the rest from being written.
     """
     taken: set[str] = set()
-    kept = [(job, file_stem(script, job.motion, taken)) for job in runs]
+    kept = [(job, file_stem(script, job.name, taken)) for job in runs]
     files: dict[str, list[Path]] = {stem: [] for _, stem in kept}
     lost: list[str] = []
     for write in (write_log, write_run_pictures):  # every log before the first picture
@@ -355,11 +362,19 @@ def _reported(recorder: Recorder) -> Iterator[None]:
 def _say_report(recorder: Recorder, program: Program) -> bool:
     """Print the report of a program; True when it holds an error."""
     report = recorder.report_of(program)
-    durations = [m.duration for m in recorder.motions if m.program is program]
-    seconds = f", {durations[-1]:.3f} s" if durations else ""
+    duration = recorder.duration_of(program)
+    seconds = "" if duration is None else f", {duration:.3f} s"
     console.print(f"[bold]{escape(program.name)}[/bold]{seconds}: ", end="")
     console.print(report, soft_wrap=not console.is_terminal)
     return not report.ok
+
+
+def _say_streams(recorder: Recorder, done: str) -> None:
+    """Name the streams, of which no motion is kept."""
+    for job in recorder.streams:
+        console.print(
+            f'"{escape(job.name)}" is a stream: it is planned as it runs, and not {done}.'
+        )
 
 
 def _say_files(files: list[Path]) -> None:

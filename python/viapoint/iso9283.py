@@ -17,21 +17,30 @@ rotation vector from the commanded orientation to the attained one.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
 from ._arguments import ArrayLike, Vector, integer, numbers_of
-from ._attained import attained_path, attained_runs, attained_stops
+from ._attained import Attained, attained_path, attained_runs, attained_stops
 from ._cornering import Cornering, cornering, cornering_from_logs
-from ._path_velocity import PathVelocity, path_velocity, path_velocity_from_logs
+from ._legs import Leg, corner_of, legs_of, middle_half
+from ._path_velocity import (
+    OVER,
+    PathVelocity,
+    path_velocity,
+    path_velocity_from_logs,
+    speeds_of,
+)
 from ._rotation_vectors import rotation_vectors
 from ._run_log import RunLog
 from .errors import BadArgumentError
 
 __all__ = [
     "Cornering",
+    "PassedCorner",
     "PathAccuracy",
     "PathVelocity",
     "PoseAccuracy",
@@ -104,6 +113,25 @@ class PathAccuracy:
 
 
 @dataclass(frozen=True)
+class PassedCorner:
+    """How a corner of the program was passed.
+
+    Attributes
+    ----------
+    moves : (int, int)
+        The straight moves that meet there.
+    place : ndarray, (3,)
+        Where their lines meet [m].
+    cornering : Cornering
+        How far it was cut and overshot.
+    """
+
+    moves: tuple[int, int]
+    place: Vector
+    cornering: Cornering
+
+
+@dataclass(frozen=True)
 class Report:
     """What the logs of one program tell.
 
@@ -115,11 +143,17 @@ class Report:
         Of every place where the arm rested for a cycle or longer, in order.
     path : PathAccuracy or None
         Of the way between; None where the tool never moved.
+    speeds : dict of int to PathVelocity
+        Of every move that was told to keep one speed on the middle half of its way, by its number.
+    corners : tuple of PassedCorner
+        Of every corner between two straight moves, in order.
     """
 
     cycles: int
     poses: tuple[PoseAccuracy, ...]
     path: PathAccuracy | None
+    speeds: dict[int, PathVelocity]
+    corners: tuple[PassedCorner, ...]
 
 
 def pose_accuracy(commanded: ArrayLike, attained: ArrayLike) -> PoseAccuracy:
@@ -203,7 +237,8 @@ def from_logs(logs: Sequence[RunLog], *, places: int = 50) -> Report:
     Poses are taken in the last cycle of every rest but the one before the motion. A stop that goes
     on at once rests in no cycle: let the program ``wait`` where a pose counts. The path is that
     of the tool's setpoints in the first log; every cycle is cut by the plane across it at `places`
-    places, equally far apart along it.
+    places, equally far apart along it. The speed that a move was told to keep, and where the lines
+    of two straight moves meet, are taken from the setpoints of the first log, too.
 
     Parameters
     ----------
@@ -227,7 +262,36 @@ def from_logs(logs: Sequence[RunLog], *, places: int = 50) -> Report:
     path = None
     if runs[0].length > 0.0:
         path = path_accuracy(*attained_path(runs, count))
-    return Report(cycles=len(runs), poses=tuple(poses), path=path)
+    legs = legs_of(runs[0])
+    return Report(
+        cycles=len(runs),
+        poses=tuple(poses),
+        path=path,
+        speeds=_speeds(runs, legs),
+        corners=tuple(_corners(runs, legs)),
+    )
+
+
+def _speeds(runs: list[Attained], legs: list[Leg]) -> dict[int, PathVelocity]:
+    """Of the moves that keep a speed, and are long enough to tell it."""
+    fewest = round(OVER / runs[0].period) + 2
+    return {
+        leg.move: path_velocity(leg.speed, [speeds_of(run, leg.move) for run in runs])
+        for leg in legs
+        if leg.speed is not None and all(len(middle_half(run, leg.move)) >= fewest for run in runs)
+    }
+
+
+def _corners(runs: list[Attained], legs: list[Leg]) -> Iterator[PassedCorner]:
+    """Of straight moves one after the other."""
+    for first, second in pairwise(legs):
+        place = corner_of(first, second)
+        if place is None:
+            continue
+        moves = (first.move, second.move)
+        ways = [run.reached[np.isin(run.move, moves), :3, 3] for run in runs]
+        if all(len(way) >= 2 for way in ways):
+            yield PassedCorner(moves, place, cornering(first.begin, place, second.end, ways))
 
 
 @dataclass(frozen=True)

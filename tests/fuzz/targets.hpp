@@ -14,10 +14,14 @@ void program(std::string_view bytes);
 void robot_yaml(std::string_view bytes);
 /// A robot as URDF. Its model is made.
 void robot_urdf(std::string_view bytes);
+/// What a client of RTDE says, in pieces. All that is answered is whole packages.
+void rtde(std::string_view bytes);
+/// A datagram to or from a drive over UDP.
+void udp(std::string_view bytes);
 /// The configuration of viapoint-controller.
 void config(std::string_view bytes);
-/// Messages to viapoint-controller, by the first byte: pieces of a motion, or a jog, or a wish. A
-/// motion that is admitted runs, and the guard finds nothing.
+/// Messages to viapoint-controller, by the first byte: pieces of a motion, or a jog, a wish, a
+/// hand's way, a reaction to an input. A motion that is admitted runs, and the guard finds nothing.
 void wire(std::string_view bytes);
 
 struct Target {
@@ -26,10 +30,14 @@ struct Target {
 };
 
 inline constexpr Target kTargets[] = {
-    {"program", program},       {"robot_yaml", robot_yaml},
+    {"program", program},
+    {"robot_yaml", robot_yaml},
     {"robot_urdf", robot_urdf},
+    {"rtde", rtde},
+    {"udp", udp},
 #ifdef VIAPOINT_REMOTE
-    {"config", config},         {"wire", wire},
+    {"config", config},
+    {"wire", wire},
 #endif
 };
 

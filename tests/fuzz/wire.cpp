@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "cpp/trajectory/trajectory_fixtures.hpp"
 #include "fuzz/broken_promise.hpp"
 #include "fuzz/targets.hpp"
 #include "viapoint/core/error.hpp"
@@ -19,18 +20,7 @@ constexpr int kJoints = 2;
 /// Enough of a run to see that it begins well.
 constexpr int kCycles = 300;
 
-JointLimits limits() {
-  JointLimits limits;
-  limits.position_min = JointVector::Constant(kJoints, -3.0);
-  limits.position_max = JointVector::Constant(kJoints, 3.0);
-  limits.velocity = JointVector::Constant(kJoints, 2.0);
-  limits.acceleration = JointVector::Constant(kJoints, 20.0);
-  limits.jerk = JointVector::Constant(kJoints, 200.0);
-  limits.coupling.resize(0, kJoints);
-  limits.coupling_lower.resize(0);
-  limits.coupling_upper.resize(0);
-  return limits;
-}
+JointLimits limits() { return testing::uniform_limits(kJoints, 3.0, 2.0, 20.0, 200.0); }
 
 /// As the controller does: what it takes it proves, and what it has proven it runs.
 void run(const v1::AddPiecesRequest& request) {
@@ -68,6 +58,18 @@ void wire(std::string_view bytes) {
     } else if (kind == 's') {
       const auto steer = parsed<v1::SteerRequest>(bytes, is_one);
       if (is_one) static_cast<void>(controller::steering_of(steer.wish()));
+    } else if (kind == 'g') {
+      const auto guide = parsed<v1::GuideRequest>(bytes, is_one);
+      if (!is_one) return;
+      for (const JointVector& row : controller::rows_of(guide.positions(), "positions", kJoints)) {
+        promise(row.size() == kJoints && row.allFinite(), "a hand that is nowhere");
+      }
+    } else if (kind == 'i') {
+      const auto reaction = parsed<v1::OnInputRequest>(bytes, is_one);
+      if (!is_one) return;
+      const InputReaction taken =
+          controller::reaction_of(reaction.input(), reaction.value(), reaction.wish());
+      promise(taken.input >= -1 && taken.input < kDigitalInputs, "a reaction to no input");
     } else {
       const auto pieces = parsed<v1::AddPiecesRequest>(bytes, is_one);
       if (is_one) run(pieces);

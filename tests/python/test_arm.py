@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+import inspect
 import os
 import signal
 import subprocess
 import sys
 import textwrap
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import viapoint as vp
 from viapoint import errors
+from viapoint._connect import _LocalOptions
 
 
 def wait_for(condition, seconds=5.0):
@@ -249,6 +252,21 @@ def test_a_closed_arm_refuses(short):
     arm.close()
     with pytest.raises(errors.DriveFaultError, match="no longer connected"):
         arm.run(short)
+
+
+def test_the_loop_stays_on_the_processor_that_it_is_given(short):
+    (least, *_) = sorted(os.sched_getaffinity(0))
+    before = set(Path("/proc/self/task").iterdir())
+    with vp.connect("sim://puma560", start=short.start, processor=least) as arm:
+        begun = set(Path("/proc/self/task").iterdir()) - before
+        kept = [os.sched_getaffinity(int(task.name)) == {least} for task in begun]
+        assert any(kept)
+        assert not any("processor" in line and "kept" in line for line in arm.shortcomings)
+
+
+def test_a_type_checker_knows_every_option_of_an_arm_of_this_process():
+    told = set(inspect.signature(vp.connect).parameters)
+    assert set(_LocalOptions.__annotations__) == told - {"url", "start", "watch", "tls"}
 
 
 def test_latencies_are_measured(short):

@@ -95,6 +95,47 @@ def test_check_is_virtual_and_the_script_notices_nothing(tmp_path):
     assert "nothing is wrong" in done.stdout
 
 
+STREAM = """import viapoint as vp
+
+with vp.connect("sim://puma560") as arm, arm.stream(name="looked") as stream:
+    for angle in (0.1, 0.2, {last}):
+        stream.movej([angle, 0, 0, 0, 0, 0], zone=vp.radius(0.02))
+"""
+
+
+def test_check_tells_of_streams_and_of_what_is_wrong_in_them(tmp_path):
+    done = _command("check", write(tmp_path / "job.py", STREAM, last="0.3"))
+    assert done.returncode == 0, done.stderr
+    assert re.search(r"looked, 0\.\d+ s: ", done.stdout), done.stdout
+    caught = STREAM.replace(" stream.movej", "".join((" try:\n", " " * 12, "stream.movej")))
+    caught += "        except vp.MotionError:\n            break\n"
+    done = _command("check", write(tmp_path / "caught.py", caught, last="9"))
+    assert done.returncode == 1, done.stdout
+    assert "1 error" in done.stdout
+    assert re.search(r"caught\.py:\s*6", done.stdout), done.stdout
+
+
+def test_run_keeps_the_figures_log_and_pictures_of_a_stream(tmp_path):
+    result = call("run", write(tmp_path / "job.py", STREAM, last="0.3"), "-o", "kept")
+    assert result.exit_code == 0, result.output
+    assert "looked: finished" in result.output
+    assert "steps that came late" in result.output
+    names = {file.name for file in (tmp_path / "kept").iterdir()}
+    stem = "job_looked"
+    assert {f"{stem}.csv", f"{stem}.npz", f"{stem}_joints.png", f"{stem}_path.png"} <= names
+    assert vp.load_log(tmp_path / "kept" / f"{stem}.npz").q[-1, 0] == pytest.approx(0.3)
+
+
+def test_a_stream_is_drawn_and_neither_exported_nor_verified(tmp_path):
+    script = write(tmp_path / "job.py", STREAM, last="0.3")
+    assert call("plot", script, "-o", "drawn").exit_code == 0
+    assert len(list((tmp_path / "drawn").glob("*.png"))) == 3
+    for command in ("export", "verify"):
+        result = call(command, script)
+        assert result.exit_code == 0, result.output
+        assert '"looked" is a stream' in result.output
+
+
 def test_plot_draws_without_motion(tmp_path):
     result = call("plot", write(tmp_path / "job.py", name="p", target=GOOD), "--out", "pictures")
     assert result.exit_code == 0, result.output

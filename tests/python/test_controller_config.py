@@ -24,6 +24,9 @@ WRONG = {
     "heartbeat: 0.001": "heartbeat: is 0.001; allowed are 0.02 to 60 s",
     "heartbeat: 0.02": "allowed are 40 cycles, 0.08 s, or more",
     "cycle: 0.01": "allowed are 40 cycles, 0.4 s, or more",
+    "processor: -1": "processor: is -1; processors count from 0",
+    "processor: 1.5": "processor: expected a whole number",
+    "keep_awake: never": 'keep_awake: is "never"; allowed are true and false',
     "tool_speed: -1": "tool_speed: is -1",
     "drive: ethercat": '"ethercat" is no drive',
     "drive: {}": "is no drive",
@@ -74,6 +77,23 @@ def test_what_is_wrong_is_named(controller, tmp_path, line):
     code, said = refusal(controller, tmp_path, f"robot: puma560\n{line}\n")
     assert code == 3
     assert WRONG[line] in said
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("robt: puma560\n", ['key "robot" is missing, there is "robt"', 'write "robot"']),
+        ("robot: puma560\nheartbaet: 1\n", ['unknown key "heartbaet"', 'write "heartbeat"']),
+        ("robot: puma560\nworkspace: {min: [0, 0, 0]}\n", ['key "max" is missing', "add max"]),
+        ("robot: puma560\nnonsense: 1\n", ['unknown key "nonsense"', "known keys here"]),
+    ],
+)
+def test_a_slip_of_the_pen_is_told_what_was_meant(controller, tmp_path, text, says):
+    code, said = refusal(controller, tmp_path, text)
+    assert code == 3
+    for part in says:
+        assert part in said
+    assert ('write "' in said) == any("write" in part for part in says)
 
 
 def test_a_file_that_is_none_is_named(controller, tmp_path):

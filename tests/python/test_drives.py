@@ -5,6 +5,7 @@ from __future__ import annotations
 import socket
 import subprocess
 import sys
+import time
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -152,6 +153,26 @@ def test_a_program_runs_on_a_device(robot, device):
             arm.set_input(0, True)
         with pytest.raises(errors.BadArgumentError, match="Only a simulated drive"):
             arm.let_go()
+
+
+def test_a_run_rests_for_an_input_of_the_device_and_keeps_the_rest_of_its_path(robot, device):
+    """The device's inputs show the outputs that it was told, so the program pauses itself."""
+    _, port = device
+    with vp.connect(f"udp://127.0.0.1:{port}", robot=robot, silent_cycles=5000) as arm:
+        goal = np.array([0.6, -0.3])
+        program = vp.Program(robot, start=arm.setpoint, scale=0.5).set_do(5, True).movej(goal)
+        job = arm.run(program, wait=False)
+        job.on_input(5, True, "pause")
+        deadline = time.monotonic() + 30.0
+        while job.state != "paused" and time.monotonic() < deadline:
+            time.sleep(0.001)
+        assert 0.0 < job.nominal_time < job.duration
+        assert np.abs(arm.setpoint - goal).max() > 0.01
+        job.resume()
+        assert job.wait(30.0)
+        assert job.state == "finished"
+        np.testing.assert_allclose(arm.setpoint, goal, atol=1e-12)
+        np.testing.assert_allclose(job.log.q[:, 1], -0.5 * job.log.q[:, 0], atol=1e-9)
 
 
 def test_a_device_that_falls_silent_is_a_drive_fault(robot, device):

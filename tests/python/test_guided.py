@@ -104,6 +104,79 @@ def test_outputs_are_recorded_with_the_joints(session, ur5e):
     assert [stage.outputs for stage in fit.stages][-1] == 2**63
 
 
+def test_an_output_that_is_switched_while_a_hand_guides_is_recorded_and_played(session, ur5e, hand):
+    with vp.connect("sim://ur5e", start=HOME) as arm:
+        arm.guide(hand)
+
+        def halfway():
+            if arm._loop.observed(arm._loop.newest_cycle, 1)[2][-1, 0] > HOME[0] + 0.15:
+                arm.set_output(5, True)
+            return arm.output(5) and not arm.guided
+
+        recorded = arm.record(60.0, until=halfway)
+        assert arm.output(5)
+        assert not arm.output(4)
+        switched = int(np.argmax(recorded.outputs == 32))
+        assert recorded.q[switched, 0] - HOME[0] > 0.1
+        assert set(recorded.outputs.tolist()) == {0, 32}
+        fit = recorded.fit(0.5e-3)
+        arm.set_output(5, False)
+        job = fit.play(arm, speed=None, reverse=True)  # backwards: on at first, then off
+        outputs = job.log.outputs
+        assert outputs[-1] == 0
+        assert 32 in outputs
+        last_on = job.log.q[np.flatnonzero(outputs == 32)[-1]]
+        assert abs(last_on[0] - recorded.q[switched, 0]) < 0.02
+
+
+def test_a_program_switches_what_a_hand_has_switched_just_before_it(session, ur5e):
+    motion = vp.Program(ur5e, start=HOME).set_do(5, True).movej(HOME + 0.05).movej(HOME).plan()
+    with vp.connect("sim://ur5e", start=HOME) as arm:
+        for _ in range(5):
+            arm.set_output(5, True)
+            deadline = time.monotonic() + 60.0
+            while not arm.output(5):
+                assert time.monotonic() < deadline
+            arm.set_output(5, False)
+            assert set(arm.run(motion).log.outputs.tolist()) == {32}
+
+
+@pytest.mark.parametrize("released", [False, True])
+def test_an_arm_that_has_failed_is_neither_guided_nor_switched(session, ur5e, released):
+    """Its loop takes nothing any more: the hand would guide, and a recording last, for ever."""
+    with vp.connect("sim://ur5e", start=HOME, tool_speed=None if released else 0.05) as arm:
+        job = arm.run(vp.Program(ur5e, start=HOME).movej(HOME + 0.3), wait=False)
+        if released:
+            job.stop(1)
+            job.wait()
+        else:
+            with pytest.raises(errors.DriveFaultError):
+                job.wait()
+        still = vp.Recording.of_samples(ur5e, [0.0, 60.0], np.tile(arm.joints, (2, 1)))
+        with pytest.raises(errors.DriveFaultError):
+            arm.guide(still)
+        assert not arm.guided
+        with pytest.raises(errors.DriveFaultError):
+            arm.set_output(1, True)
+        assert arm.record(0.01).duration < 0.01
+
+
+@pytest.mark.parametrize(
+    ("call", "says"),
+    [
+        (lambda arm: arm.set_output(64, True), "index is 64"),
+        (lambda arm: arm.set_output(0, 1), "value is 1"),
+        (lambda arm: arm.output(-1), "index is -1"),
+    ],
+)
+def test_outputs_that_are_none_are_refused(call, says):
+    with (
+        vp.connect("sim://ur5e", start=HOME) as arm,
+        pytest.raises(errors.BadArgumentError, match=says),
+    ):
+        call(arm)
+
+
 def test_a_hand_may_let_go_early(session, ur5e, hand):
     with vp.connect("sim://ur5e", start=HOME) as arm:
         arm.guide(hand)

@@ -2,6 +2,7 @@
 
 import time
 
+import numpy as np
 import pytest
 
 import viapoint as vp
@@ -60,6 +61,26 @@ def test_a_stream_stops_by_an_input(arm):
         arm.set_input(0, True)
         assert reached(lambda: stream.job.ended)
     assert stream.job.state == "stopped"
+
+
+def test_a_stream_keeps_the_rest_of_its_path_for_an_input(arm):
+    """Steps told while the arm rests follow on those that it had."""
+    with arm.stream(scale=0.3) as stream:
+        stream.movej([0.4, 0.2]).movej([0.8, 0.4])
+        assert reached(lambda: stream.job is not None)
+        stream.job.on_input(0, True, "pause")
+        arm.set_input(0, True)
+        assert reached(lambda: stream.job.state == "paused")
+        stream.movej([1.2, 0.6])
+        before = stream.job.nominal_time
+        stream.job.on_input(0, False, "resume")
+        assert stream.job.nominal_time == before
+        arm.set_input(0, False)
+    assert stream.job.state == "finished"
+    np.testing.assert_allclose(arm.setpoint, [1.2, 0.6], atol=1e-12)
+    q = stream.job.log.q
+    np.testing.assert_allclose(q[:, 1], 0.5 * q[:, 0], atol=1e-9)
+    assert (np.diff(q[:, 0]) > -1e-12).all()  # it never went back
 
 
 @pytest.mark.parametrize(

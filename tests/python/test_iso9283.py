@@ -245,6 +245,36 @@ def test_a_blended_corner_is_cut_by_what_the_zone_says():
     assert found.overshoot == pytest.approx(0.0, abs=1e-5)
 
 
+def test_speeds_and_corners_of_a_program_are_found_in_its_logs():
+    """Two legs of 150 mm with a rounded corner, an arc, and a move that is never steady."""
+    robot = vp.load_robot("ur5e")
+    home = np.radians([0, -90, 90, -90, -90, 0])
+    there, back, over, down = (robot.fk(home) for _ in range(4))
+    there[1, 3] += 0.15
+    back[:2, 3] += (0.15, 0.15)
+    over[:2, 3] += (0.19, 0.19)
+    down[:2, 3] += (0.15, 0.23)
+    program = vp.Program(robot, start=home).movel(there, speed=0.1, zone=vp.deviation(0.003))
+    program.movel(back, speed=0.08).movec(over, down, speed=0.05).movej(home)
+    with vp.connect("sim://ur5e", start=home) as arm:
+        log = arm.run(program).log
+    log = replace(log, measured=log.q)
+    report = iso9283.from_logs([log, log])
+    commanded = {move: found.commanded for move, found in report.speeds.items()}
+    assert commanded == pytest.approx({0: 0.1, 1: 0.08, 2: 0.05}, rel=0.01)
+    for found in report.speeds.values():
+        assert found.accuracy == pytest.approx(0.0, abs=2e-3)
+    (corner,) = report.corners
+    assert corner.moves == (0, 1)
+    np.testing.assert_allclose(corner.place, there[:3, 3], atol=1e-4)
+    assert 1e-3 < corner.cornering.rounding <= 0.003 + 1e-4
+    assert corner.cornering.overshoot < 1e-4
+    slow = off_by_share(log, -0.05)  # along y alone
+    report = iso9283.from_logs([slow])
+    assert report.speeds[0].accuracy == pytest.approx(-0.05, rel=0.02)
+    assert report.speeds[1].accuracy == pytest.approx(0.0, abs=3e-3)
+
+
 def test_a_slow_creep_is_no_rest_and_a_reversal_neither(log):
     """Rests are where the setpoint stands still for two cycles, whatever its velocity says."""
     from viapoint._attained import _rests
@@ -288,5 +318,6 @@ def test_the_command_prints_the_figures_and_says_what_is_wrong(log, tmp_path):
     assert "0.282" in done.output  # √(0.2² + 0.2²) mm, nearly
     assert "pose 2" in done.output
     assert "asks for 30" in done.output
+    assert "of moves 0 and 1" not in done.output  # there and back in one line: no corner
     broken = CliRunner().invoke(cli.app, ["report", str(tmp_path / "none.npz")])
     assert broken.exit_code == 1

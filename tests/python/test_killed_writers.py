@@ -9,6 +9,8 @@ import pytest
 import viapoint as vp
 from viapoint import verifier
 
+pytest.importorskip("mcap")
+
 WRITER = """
 import sys
 import numpy as np
@@ -35,6 +37,7 @@ while True:
     motion.save("move.motion.json")
     log.save("log.npz")
     log.save("log.csv")
+    log.save("log.mcap")
     fit.save("recording.json")
     print(done, flush=True)
 """
@@ -70,7 +73,7 @@ def test_a_killed_writer_leaves_the_old_files_or_the_new(tmp_path, seed):
         verdict = verifier.verify(tmp_path / "move.motion.json")
         assert verdict.holds
         assert acknowledged <= int(verdict.name) <= acknowledged + 1
-        for name in ("log.npz", "log.csv"):
+        for name in ("log.npz", "log.csv", "log.mcap"):
             log = vp.load_log(tmp_path / name, robot)
             written = round((log.q[-1, 0] - home[0]) / 1e-4)
             assert acknowledged <= written <= acknowledged + 1
@@ -78,4 +81,4 @@ def test_a_killed_writer_leaves_the_old_files_or_the_new(tmp_path, seed):
         written = round((fit.end[0] - home[0] - 0.1) / 1e-4)
         assert abs(written - acknowledged) <= 10  # the fit is good to its tolerance only
     # The first writer's remains aside are cleared by the next one's write of the same file.
-    assert len(list(tmp_path.iterdir())) <= 6 + 1 + 1
+    assert len(list(tmp_path.iterdir())) <= 7 + 1 + 1

@@ -2,6 +2,7 @@
 
 import contextlib
 import json
+import resource
 import subprocess
 import sys
 
@@ -10,8 +11,9 @@ import pytest
 
 import viapoint as vp
 from viapoint import _core, errors
-from viapoint._log_files import ROWS, SCALARS
+from viapoint._log_files import ROWS, SCALARS, robot_in
 from viapoint._log_mcap import TOPICS
+from viapoint._written_aside import written_aside
 
 reader = pytest.importorskip("mcap.reader")
 
@@ -122,6 +124,35 @@ def test_the_tools_pose_is_there(log, tmp_path):
     np.testing.assert_array_equal([place[k] for k in "xyz"], log.samples.pose[-1, :3, 3])
 
 
+def test_joints_keep_their_names_whatever_signs_are_in_them(puma, log, tmp_path):
+    odd = robot_in(puma._core.to_yaml().replace("joint1", "100%d"))
+    vp.RunLog.of_robot(log.core, odd, log.period).save(tmp_path / "x.mcap")
+    with (tmp_path / "x.mcap").open("rb") as file:
+        messages = reader.make_reader(file).iter_messages(topics="/joint_states")
+        last = json.loads([message.data for _, _, message in messages][-1])
+    assert [joint["name"] for joint in last["joints"]] == ["100%d", *puma.joint_names[1:]]
+    assert [joint["position"] for joint in last["joints"]] == log.q[-1].tolist()
+    assert [joint["acceleration"] for joint in last["joints"]] == log.qdd[-1].tolist()
+
+
+def test_numbers_as_json_read_back_to_the_last_bit():
+    rng = np.random.default_rng(5)
+    bits = rng.integers(0, 2**64, (2000, 6), dtype=np.uint64).view(np.float64)
+    plain = [[0.0, -0.0, 5e-324, 1e22, -7.0, 100000.0], [np.nan, np.inf, -np.inf, 0.1, 1 / 3, 2e-5]]
+    values = np.vstack((np.round(rng.normal(size=(500, 6)), 2), bits, plain))
+    texts = _core.json_rows(values)
+    read = np.array([json.loads(text) for text in texts], dtype=np.float64)
+    expected = np.where(np.isfinite(values), values, np.nan)
+    is_number = np.isfinite(values)
+    np.testing.assert_array_equal(
+        read.view(np.uint64)[is_number], expected.view(np.uint64)[is_number]
+    )
+    assert np.isnan(read[~is_number]).all()
+    assert texts[-1].startswith("[null,null,null,0.1,")
+    assert "-0.0," in texts[-2]
+    assert _core.json_rows(np.zeros((0, 6))) == []
+
+
 @pytest.mark.parametrize("name", ["log", "log.txt", "log.npz.gz"])
 def test_a_log_of_no_known_format_is_refused(log, tmp_path, name):
     for call in (log.save, vp.load_log):
@@ -135,6 +166,67 @@ def test_a_log_that_is_not_there_or_cannot_be_written_is_refused(log, puma, tmp_
         log.save(tmp_path / "no_such_folder" / f"x.{ending}")
     with pytest.raises(errors.FileError, match=r"no log .*nothing"):
         vp.load_log(tmp_path / f"nothing.{ending}", puma)
+
+
+@pytest.mark.parametrize("ending", ["npz", "mcap", "csv"])
+def test_a_full_disk_is_told_by_name_and_costs_nothing_that_was_there(log, real, tmp_path, ending):
+    path = tmp_path / f"x.{ending}"
+    real.save(path)
+    old = path.read_bytes()
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    # A write beyond 4 KiB fails, as it does on a full disk; Python ignores the signal.
+    resource.setrlimit(resource.RLIMIT_FSIZE, (4096, before[1]))
+    try:
+        with pytest.raises(errors.FileError, match=rf"x\.{ending}: cannot write") as told:
+            log.save(path)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    assert "make room" in told.value.ways_out[0]
+    assert path.read_bytes() == old
+    assert list(tmp_path.iterdir()) == [path]
+
+
+@pytest.mark.parametrize("ending", ["npz", "mcap"])
+def test_a_long_log_is_written_in_pieces(log, tmp_path, monkeypatch, ending):
+    columns = {key: np.tile(getattr(log, key), 20) for key in SCALARS}
+    columns |= {key: np.tile(getattr(log, key), (20, 1)) for key in ROWS}
+    columns["cycle"] = np.arange(len(columns["cycle"]), dtype=np.uint64)
+    columns["stamp"] = columns["cycle"].astype(np.int64) * 2_000_000
+    long = vp.RunLog.of_robot(_core.Log.of_columns(columns), log.robot, log.period, log.tools)
+    pieces = []
+
+    class Watched(_core.AtomicFile):
+        def write(self, piece):
+            pieces.append(len(piece))
+            super().write(piece)
+
+    monkeypatch.setattr(_core, "AtomicFile", Watched)
+    path = tmp_path / f"long.{ending}"
+    long.save(path)
+    assert sum(pieces) == path.stat().st_size
+    assert max(pieces) < 0.5 * path.stat().st_size
+    assert_same(vp.load_log(path), long)
+
+
+def test_a_block_that_fails_leaves_the_old_file(tmp_path):
+    path = tmp_path / "x.bin"
+    path.write_bytes(b"old")
+
+    def fail_halfway():
+        with written_aside(str(path)) as file:
+            file.write(b"part")
+            raise KeyError
+
+    with pytest.raises(KeyError):
+        fail_halfway()
+    assert path.read_bytes() == b"old"
+    assert list(tmp_path.iterdir()) == [path]
+    with written_aside(str(path)) as file:
+        file.write(b"ne")
+        file.write(bytearray(b"w"))
+        assert file.tell() == 3
+        assert path.read_bytes() == b"old"
+    assert path.read_bytes() == b"new"
 
 
 def test_a_csv_without_its_robot_and_a_log_of_another_are_refused(log, tmp_path):
@@ -178,3 +270,17 @@ def test_without_mcap_its_installation_is_the_way_out(tmp_path):
         [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True
     )
     assert "pip install viapoint[mcap]" in done.stdout
+
+
+@pytest.mark.parametrize("ending", ["npz", "csv", "mcap"])
+def test_a_log_without_a_cycle_is_read_back(tmp_path, puma, ending):
+    columns = {
+        **{key: np.zeros(0, kind) for key, kind in SCALARS.items()},
+        **{key: np.zeros((0, 6)) for key in ROWS},
+    }
+    log = vp.RunLog.of_robot(_core.Log.of_columns(columns), puma, 0.002)
+    log.save(tmp_path / f"none.{ending}")
+    read = vp.load_log(tmp_path / f"none.{ending}", puma if ending == "csv" else None)
+    assert len(read) == 0
+    assert read.q.shape == (0, 6)
+    assert read.samples.pose.shape == (0, 4, 4)

@@ -225,3 +225,22 @@ def test_over_the_wire_a_run_waits_and_switches_the_same(serve):
         with pytest.raises(errors.InputTimeoutError, match="input 7 was not on"):
             arm.run(waiting(arm, timeout=0.1))
         assert arm.job.state == "stopped"
+
+
+def test_a_stream_switches_before_a_point_what_is_told_with_its_move(ur5e):
+    targets = [there(ur5e, 0.1 if k % 2 == 0 else 0.0) for k in range(20)]
+    with (
+        _session.use(_Virtual()),
+        vp.connect("sim://ur5e", start=HOME) as arm,
+        arm.stream(ahead=4, scale=0.5) as stream,
+    ):
+        for k, target in enumerate(targets):
+            stream.movel(target).set_do(3, k % 2 == 0, distance=-20 * mm)
+    log = stream.job.log
+    changes = np.flatnonzero(np.diff(log.outputs)) + 1
+    assert len(changes) == len(targets)
+    for k, target in zip(changes, targets, strict=True):
+        before, at = (
+            np.linalg.norm(log.samples.pose[i, :3, 3] - target[:3, 3]) for i in (k - 1, k)
+        )
+        assert at <= 20 * mm + 1e-6 <= before + 2e-6

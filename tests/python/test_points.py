@@ -49,6 +49,54 @@ def test_a_known_name_is_replaced_in_its_place(points, file, abc):
     np.testing.assert_array_equal(again["B"], abc["B"] + 0.1)
 
 
+def test_a_point_tells_its_pose_and_branch(points, puma, abc):
+    np.testing.assert_array_equal(points.pose("B"), puma.fk(abc["B"]))
+    assert points.branch("B").fits(puma.configuration(abc["B"]))
+    with pytest.raises(errors.BadArgumentError, match="has no point"):
+        points.branch("none")
+
+
+@pytest.mark.parametrize("name", ["puma560", "ur5e", "panda"])
+def test_a_point_keeps_its_branch_wherever_its_frame_goes(name, tmp_path):
+    """The nearest solution may stand otherwise: then the arm would swing over between points."""
+    homes = {
+        "puma560": [10, -50, 60, 10, 45, 5],
+        "ur5e": [0, -90, 90, -90, -90, 0],
+        "panda": [0, -45, 0, -135, 0, 90, 45],
+    }
+    robot = vp.load_robot(name)
+    points = vp.PointList(tmp_path / "points.json", robot)
+    rng = np.random.default_rng(3)
+    limits = robot.limits
+    went = swung = 0
+    refused = []
+    for _ in range(60):
+        q = np.radians(homes[name]) + rng.uniform(-0.6, 0.6, robot.joints)
+        q = np.clip(q, limits.position_min, limits.position_max)
+        there = np.eye(4)
+        there[:3, 3] = rng.uniform(-0.4, 0.4, 3)
+        points.record("p", q, frame=vp.frames.Frame(np.eye(4), "table"))
+        stood = points.branch("p")
+        try:
+            found = points.joints_in("p", [vp.frames.Frame(there, "table")])
+        except (errors.UnreachableError, errors.OutsideLimitsError) as error:
+            refused.append(error.message)
+            continue
+        now = robot.configuration(found)
+        assert (now.shoulder, now.elbow, now.wrist) == (stood.shoulder, stood.elbow, stood.wrist)
+        np.testing.assert_allclose(robot.fk(found), there @ robot.fk(q), atol=1e-8)
+        nearest = robot.configuration(robot.ik(there @ robot.fk(q), near=q))
+        swung += (nearest.shoulder, nearest.elbow, nearest.wrist) != (
+            *(stood.shoulder, stood.elbow, stood.wrist),
+        )
+        went += 1
+    assert went > 15
+    assert all('point "p" in the frame "table"' in said for said in refused)
+    if name == "puma560":
+        assert swung > 0
+        assert len(refused) > 0
+
+
 def test_a_touch_up_tells_how_far_the_point_moves(points, file, abc):
     q = abc["B"] + [0.01, 0, 0, 0, 0, 0.002]
     change = points.touch_up("B", q)

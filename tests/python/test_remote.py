@@ -13,7 +13,9 @@ import numpy as np
 import pytest
 
 import viapoint as vp
-from viapoint import _core
+from viapoint import _core, _session
+from viapoint._remote import RemoteLoop
+from viapoint._wire import message
 from viapoint.errors import (
     BadArgumentError,
     BusyError,
@@ -43,6 +45,53 @@ def slow(arm):
 @pytest.fixture
 def url(serve, abc):
     return serve(start=list(abc["A"])).url
+
+
+def test_an_arm_is_of_the_kind_that_its_url_says_and_keeps_its_words_in_virtual_time(url):
+    with vp.connect("sim://two_link") as arm:
+        assert isinstance(arm, vp.LocalArm)
+    with vp.connect(url) as arm:
+        assert isinstance(arm, vp.RemoteArm)
+        assert arm.operator.endswith(f"process {os.getpid()}")
+        assert arm.job is None
+    virtual = _session.Session()
+    virtual.virtual = True
+    with _session.use(virtual), vp.connect(url) as arm:
+        assert isinstance(arm, vp.RemoteArm)
+        assert (arm.operator, arm.control_loss, arm.job) == ("", "", None)
+        job = arm.run(vp.Program(arm.robot, start=arm.setpoint).movej(arm.setpoint + 0.1))
+        assert arm.job is job
+    with vp.connect(url, watch=True) as arm:
+        assert arm.job is None  # nothing ran there
+
+
+def test_runs_stay_readable_while_the_script_has_hold_of_them(url, abc):
+    with vp.connect(url) as arm:
+        goals = [abc["A"] + 0.02 * k for k in range(1, 6)]
+        jobs = [arm.run(vp.Program(arm.robot, start=arm.setpoint).movej(q)) for q in goals]
+        assert [job.state for job in jobs] == ["finished"] * 5
+        dropped = arm.run(vp.Program(arm.robot, start=arm.setpoint).movej(abc["A"]), wait=False)
+    for job, q in zip(jobs, goals, strict=True):  # the arm is closed, too
+        np.testing.assert_allclose(job.log.q[-1], q, atol=1e-12)
+        assert job.report.cycles == len(job.log)
+    assert dropped.state == "finished"
+    assert len(dropped.log) == dropped.report.cycles
+
+
+def test_a_run_whose_answer_was_lost_is_stopped_with_the_arm(url, monkeypatch):
+    call = RemoteLoop.call
+
+    def interrupted(loop, method, *args, **options):
+        answer = call(loop, method, *args, **options)
+        if method == "Run":
+            raise KeyboardInterrupt
+        return answer
+
+    monkeypatch.setattr(RemoteLoop, "call", interrupted)
+    with pytest.raises(KeyboardInterrupt), vp.connect(url) as arm:
+        arm.run(slow(arm))
+    with vp.connect(url) as arm:
+        assert arm.job.state == "stopped"
 
 
 def test_a_run_has_the_setpoints_of_one_in_this_process(url, puma, abc):
@@ -127,6 +176,14 @@ def test_motions_that_two_threads_send_at_once_are_not_mixed_up(url, monkeypatch
             thread.join()
         ((motion, execution),) = started
         assert execution.duration == motion.duration
+
+
+def test_who_asks_for_control_cannot_act_on_the_terminals_of_others(url):
+    with vp.connect(url, watch=True) as arm:
+        name = "a\x1b[31m\x9b2J\x7f\u00e9"
+        request = message("TakeControlRequest", name=name, version=vp.__version__)
+        arm._remote.call("TakeControl", request, "Control")
+        assert arm.operator == "a?[31m??2J?\u00e9"
 
 
 def test_a_jog_moves_the_arm_for_as_long_as_it_is_called(url):

@@ -25,14 +25,14 @@ def authority(folder, name):
     )  # fmt: skip
 
 
-def certificate(folder, name, signed_by):
+def certificate(folder, name, signed_by, days="2"):
     (folder / "names").write_text("subjectAltName=IP:127.0.0.1\n", encoding="ascii")
     openssl(
         folder, *("req", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:P-256", "-nodes"),
         *("-subj", f"/CN={name}", "-keyout", f"{name}.key", "-out", f"{name}.csr"),
     )  # fmt: skip
     openssl(
-        folder, *("x509", "-req", "-in", f"{name}.csr", "-CA", f"{signed_by}.pem", "-days", "2"),
+        folder, *("x509", "-req", "-in", f"{name}.csr", "-CA", f"{signed_by}.pem", "-days", days),
         *("-CAkey", f"{signed_by}.key", "-CAcreateserial", "-extfile", "names"),
         *("-out", f"{name}.pem"),
     )  # fmt: skip
@@ -46,6 +46,7 @@ def files(tmp_path_factory):
     certificate(folder, "controller", "controller-ca")
     certificate(folder, "me", "clients-ca")
     certificate(folder, "stranger", "strangers-ca")
+    certificate(folder, "late", "clients-ca", days="-1")
     return folder
 
 
@@ -73,6 +74,22 @@ def test_who_shows_none_or_a_strangers_is_refused(served, files):
         vp.connect(served.url)
     with pytest.raises(UnconnectedError):
         vp.connect(served.url, tls=shown(files, "stranger"))
+
+
+def test_who_shows_a_certificate_that_has_run_out_is_refused(served, files):
+    with pytest.raises(UnconnectedError):
+        vp.connect(served.url, tls=shown(files, "late"))
+    assert served.process.poll() is None
+
+
+def test_a_controller_whose_own_files_are_none_does_not_start(serve, files):
+    tls = {name: str(files / "controller.pem") for name in ("authority", "certificate", "key")}
+    with pytest.raises(AssertionError, match="belong together"):
+        serve(tls=tls)
+    (files / "none.pem").write_text("no certificate\n", encoding="ascii")
+    tls = {name: str(files / "none.pem") for name in ("authority", "certificate", "key")}
+    with pytest.raises(AssertionError, match="PEM"):
+        serve(tls=tls)
 
 
 def test_a_controller_of_another_authority_is_not_believed(served, files):

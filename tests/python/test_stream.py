@@ -257,6 +257,51 @@ def test_nothing_moves_after_a_motion_that_could_not_begin(arm):
     assert not arm.joints.any()
 
 
+def test_a_step_after_a_fault_raises_what_has_failed(puma, abc, in_virtual_time):
+    with vp.connect("sim://puma560", start=abc["A"], tool_speed=0.05) as arm:
+        stream = arm.stream(ahead=3)
+        with pytest.raises(errors.DriveFaultError, match="too fast"):
+            tell_all(stream, [abc["B"], abc["A"]] * 50)
+        assert stream.job.state == "fault"
+        stream.close()
+
+
+def test_an_input_that_a_stream_waits_for_in_vain_is_told_at_the_next_step():
+    with vp.connect("sim://two_link") as arm:
+        stream = arm.stream().movej([0.1, 0.1]).wait_di(3, timeout=0.05)
+        stream.movej([0.2, 0.2])
+        deadline = time.monotonic() + 30.0
+        while not stream.job.ended and time.monotonic() < deadline:
+            time.sleep(0.005)
+        with pytest.raises(errors.InputTimeoutError):
+            stream.movej([0.3, 0.3])
+        stream.close()
+
+
+def test_the_arm_tells_of_the_run_of_a_stream(arm):
+    first = arm.run(vp.Program(arm.robot, start=[0.0] * 3).movej([0.1] * 3))
+    with arm.stream() as stream:
+        assert arm.job is first
+        with pytest.raises(errors.BusyError, match="stream"):
+            arm.run(vp.Program(arm.robot, start=arm.setpoint).movej([0.2] * 3))
+        stream.movej([0.2] * 3)
+        assert stream.job is arm.job
+    assert arm.job is stream.job
+    assert arm.job.state == "finished"
+    last = arm.run(vp.Program(arm.robot, start=arm.setpoint).movej([0.3] * 3))
+    assert arm.job is last
+
+
+def test_a_look_at_a_stream_in_virtual_time_lets_no_more_pass_than_at_a_short_one(in_virtual_time):
+    robot = vp.joint_robot(1, velocity=0.01, acceleration=1.0, jerk=10.0)
+    with vp.connect("sim://axis", robot=robot) as arm, arm.stream() as stream:
+        stream.movej([1.0])
+        job = stream.job
+        assert job.duration > 100.0
+        before = job.nominal_time
+        assert 0.0 < job.nominal_time - before < 0.2
+
+
 def test_there_is_one_stream_at_a_time(arm):
     first = arm.stream()
     with pytest.raises(errors.BusyError, match="stream"):
@@ -276,19 +321,21 @@ def test_there_is_one_stream_at_a_time(arm):
 @pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="counts threads as Linux tells")
 def test_a_closed_arm_is_not_held_by_its_stream():
     def threads():
-        return len(list(Path("/proc/self/task").iterdir()))
+        return {task.name for task in Path("/proc/self/task").iterdir()}
 
     robot = vp.joint_robot(3, velocity=3.0, acceleration=20.0, jerk=400.0)
     before = threads()
     with vp.connect("sim://axes", robot=robot) as arm, arm.stream() as stream:
         stream.movej([0.1] * 3)
-        assert threads() > before
-    assert threads() == before
+        begun = threads() - before
+        assert begun
+    assert not threads() & begun
     assert stream.late == []
     unused = vp.connect("sim://axes", robot=robot)
     stream = unused.stream()
+    begun = threads() - before
     unused.close()
-    assert threads() == before
+    assert not threads() & begun
     assert stream.ended
 
 

@@ -19,6 +19,9 @@ void bench_walk(int paths);
 /// Programs of 10, 100, … moves: time and memory a move, each size in a process of its own.
 /// @param moves of the longest program
 void bench_growth(int moves);
+/// Streams of a hundredth of `moves`, a tenth and all, run in virtual time: time and memory, each
+/// in a process of its own. @param moves of the longest stream, at least 100
+void bench_stream(int moves);
 /// Lines, and arcs, helices and splines, at random on five arms as joints: how many can be
 /// followed, and whether any of 1000 places of every piece is beyond what was proven; then the
 /// knots of lines beside Taylor's.
@@ -30,6 +33,11 @@ void bench_kinematics(int poses);
 /// Random straight lines, half of them through a singular wrist, followed pose by pose: steps that
 /// fail, jumps, and lines that no choice of branch follows. @param lines for each arm
 void bench_tracking(int lines);
+
+/// Programs and streams one after the other on the loop with the machine's clock, random commands,
+/// jogs, inputs and outputs from three threads meanwhile, and a fourth that watches: every logged
+/// cycle against limits and path. @param seconds that it takes, at least
+void bench_soak(int seconds);
 
 /// Prints random programs for four arms, each with its robot and seed, to be planned by who reads
 /// them. @param programs in all

@@ -1,43 +1,19 @@
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <chrono>
 #include <functional>
 #include <optional>
 #include <random>
-#include <stdexcept>
 #include <string>
 
 #include "benches.hpp"
 #include "durations.hpp"
 #include "json_line.hpp"
+#include "own_process.hpp"
 #include "sample_programs.hpp"
 #include "viapoint/planning/motion_planner.hpp"
 #include "viapoint/planning/stream_planner.hpp"
 
 namespace viapoint::bench {
 namespace {
-
-/// What a process has needed at most so far [bytes].
-double peak_memory() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return 1024.0 * static_cast<double>(usage.ru_maxrss);
-}
-
-/// Measures in a process of its own, whose memory begins as small as this one's.
-void apart(const std::function<void()>& measure) {
-  const pid_t child = fork();
-  if (child == 0) {
-    measure();
-    _exit(0);
-  }
-  int status = 0;
-  if (child < 0 || waitpid(child, &status, 0) < 0 || status != 0) {
-    throw std::runtime_error("a measurement in a process of its own has failed");
-  }
-}
 
 void run(const std::string& subject, const RobotPtr& robot, int moves,
          const std::function<MotionProgram()>& make) {

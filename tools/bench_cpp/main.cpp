@@ -10,18 +10,21 @@ namespace {
 constexpr std::string_view kUsage =
     "usage: viapoint-bench tick [TICKS] | commands [SEQUENCES] | plan [PROGRAMS] |\n"
     "                      certificate [PROGRAMS] | walk [PATHS] | growth [MOVES] |\n"
-    "                      insertion [PROBLEMS] | kinematics [POSES] | tracking [LINES] | all |\n"
-    "                      programs [PROGRAMS] | stops [STOPS]\n"
+    "                      stream [MOVES] | insertion [PROBLEMS] | kinematics [POSES] | tracking "
+    "[LINES] |\n"
+    "                      all | programs [PROGRAMS] | stops [STOPS] | soak [SECONDS]\n"
     "Prints one JSON object a line; times as its keys say.\n";
 
-constexpr int kTicks = 1'000'000;
+constexpr int kTicks = 2'500'000;  ///< of each case: 10^7 together
 constexpr int kSequences = 10'000;
 constexpr int kPrograms = 100;
 constexpr int kPoses = 1'000'000;
 constexpr int kPaths = 20;
 constexpr int kMoves = 10'000;
+constexpr int kStreamMoves = 300'000;
 constexpr int kProblems = 1000;
 constexpr int kLines = 300;
+constexpr int kSeconds = 15 * 60;
 
 int count_of(int argc, char** argv, int otherwise) {
   if (argc < 3) return otherwise;
@@ -36,8 +39,10 @@ int default_count(std::string_view command) {
   if (command == "commands") return kSequences;
   if (command == "kinematics") return kPoses;
   if (command == "growth") return kMoves;
+  if (command == "stream") return kStreamMoves;
   if (command == "insertion") return kProblems;
   if (command == "tracking") return kLines;
+  if (command == "soak") return kSeconds;
   return command == "walk" ? kPaths : kPrograms;
 }
 
@@ -64,6 +69,8 @@ int main(int argc, char** argv) {
       bench_walk(count);
     } else if (command == "growth") {
       bench_growth(count);
+    } else if (command == "stream") {
+      bench_stream(count);
     } else if (command == "insertion") {
       bench_insertion(count);
     } else if (command == "kinematics") {
@@ -74,6 +81,8 @@ int main(int argc, char** argv) {
       print_random_programs(count);
     } else if (command == "stops") {
       print_stops(count);
+    } else if (command == "soak") {
+      bench_soak(count);
     } else if (command == "all" && argc == 2) {
       bench_kinematics(kPoses);
       bench_tracking(kLines);
@@ -83,6 +92,7 @@ int main(int argc, char** argv) {
       bench_certificate(kPrograms);
       bench_walk(kPaths);
       bench_growth(kMoves);
+      bench_stream(kStreamMoves);
       bench_insertion(kProblems);
     } else {
       std::cerr << kUsage;

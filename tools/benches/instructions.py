@@ -9,7 +9,7 @@ from benches.tables import Row
 
 TICK = "viapoint::Interpolator::tick(viapoint::Setpoint&)"
 TICKS = 600
-"""Of each case of the tick bench: callgrind writes a file for each."""
+"""Of each case of the tick bench, which does each twice: callgrind writes a file for each."""
 
 
 def totals(folder: Path) -> list[int]:

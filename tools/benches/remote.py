@@ -6,9 +6,11 @@ All traffic goes to a controller started here, on a port of 127.0.0.1 that the s
 import json
 import os
 import re
+import resource
 import signal
 import socket
 import statistics
+import struct
 import subprocess
 import sys
 import tempfile
@@ -26,8 +28,12 @@ if TYPE_CHECKING:
     import viapoint as vp
 
 HEARTBEAT = 0.1
-MUTE = 300
-"""Connections that say nothing."""
+MUTE = 2000
+"""Connections that say nothing, about twice as many as the controller takes."""
+RTDE_CLIENTS = 16
+RTDE_NAMES = (
+    b"timestamp,target_q,target_qd,target_qdd,actual_q,actual_qd,actual_TCP_pose,joint_mode"
+)
 CLIENT = """
 import sys
 import viapoint as vp
@@ -40,11 +46,16 @@ with vp.connect(sys.argv[1]) as arm:
 
 
 @contextmanager
-def controller() -> Iterator[tuple[str, int]]:
-    """Start a controller, and give its url and port."""
+def controller() -> Iterator[tuple[str, int, int]]:
+    """Start a controller, and give its url, its port, and that of RTDE."""
     with tempfile.TemporaryDirectory() as folder:
         config = Path(folder) / "controller.yaml"
-        told = {"robot": "puma560", "listen": "127.0.0.1:0", "heartbeat": HEARTBEAT}
+        told = {
+            "robot": "puma560",
+            "listen": "127.0.0.1:0",
+            "heartbeat": HEARTBEAT,
+            "rtde": {"port": 0},
+        }
         config.write_text(json.dumps(told), encoding="utf-8")
         process = subprocess.Popen(
             [Path(sys.executable).parent / "viapoint-controller", "--config", config],
@@ -53,10 +64,12 @@ def controller() -> Iterator[tuple[str, int]]:
         )
         assert process.stderr is not None
         try:
+            ports: list[int] = []
             for line in process.stderr:
-                if found := re.search(r"is served at \S+:(\d+)", line):
-                    port = int(found.group(1))
-                    yield f"tcp://127.0.0.1:{port}", port
+                if found := re.search(r"is served at \S+(?::| port )(\d+)", line):
+                    ports.append(int(found.group(1)))
+                if len(ports) == 2:
+                    yield f"tcp://127.0.0.1:{ports[0]}", ports[0], ports[1]
                     break
         finally:
             process.terminate()
@@ -171,10 +184,53 @@ def repeated(act: Callable[[], object]) -> Iterator[None]:
         thread.join()
 
 
+def connect(port: int) -> socket.socket:
+    """Connect, and say nothing."""
+    return socket.create_connection(("127.0.0.1", port), timeout=5)
+
+
+def frame(kind: int, flags: int, stream: int, payload: bytes) -> bytes:
+    """Return an HTTP/2 frame."""
+    return struct.pack(">I", len(payload))[1:] + struct.pack(">BBI", kind, flags, stream) + payload
+
+
+def ask_and_never_read(port: int) -> socket.socket:
+    """Make sixteen calls whose answers the window has no room for."""
+    headers = {
+        b":method": b"POST",
+        b":scheme": b"http",
+        b":path": b"/viapoint.v1.Controller/GetState",
+        b":authority": b"nobody",
+        b"te": b"trailers",
+        b"content-type": b"application/grpc",
+    }
+    block = b"".join(
+        b"\0" + bytes([len(name)]) + name + bytes([len(value)]) + value
+        for name, value in headers.items()
+    )
+    connection = connect(port)
+    connection.sendall(b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n" + frame(4, 0, 0, b"\0\4\0\0\0\0"))
+    for stream in range(1, 32, 2):
+        connection.sendall(frame(1, 4, stream, block) + frame(0, 1, stream, bytes(5)))
+    return connection
+
+
+def rtde_client(port: int) -> socket.socket:
+    """Begin to be sent data at 500 Hz."""
+
+    def package(kind: bytes, payload: bytes) -> bytes:
+        return struct.pack(">H", 3 + len(payload)) + kind + payload
+
+    client = connect(port)
+    recipe = struct.pack(">d", 500.0) + RTDE_NAMES
+    client.sendall(package(b"V", b"\0\2") + package(b"O", recipe) + package(b"S", b""))
+    return client
+
+
 def flood(port: int) -> None:
     """Send bytes that mean nothing."""
     try:
-        with socket.create_connection(("127.0.0.1", port), timeout=5) as connection:
+        with connect(port) as connection:
             connection.sendall(os.urandom(1 << 16))
     except OSError:
         return  # hung up on, as it should be
@@ -185,14 +241,27 @@ def measure(*, quick: bool) -> list[Row]:
     import viapoint as vp
 
     count, seconds = (3, 3.0) if quick else (20, 30.0)
-    with controller() as (url, port):
+    _, most = resource.getrlimit(resource.RLIMIT_NOFILE)
+    resource.setrlimit(resource.RLIMIT_NOFILE, (most, most))
+    with controller() as (url, port, rtde):
         rows = call_times(url, 100 if quick else 2000)
         rows += [silence_times(url, number, count) for number in (signal.SIGKILL, signal.SIGSTOP)]
         rows.append(latency(url, "its operator alone", seconds))
         with ExitStack() as stack:
+            arm = stack.enter_context(vp.connect(url, watch=True))  # gRPC shares its connection
             for _ in range(MUTE):
-                stack.enter_context(socket.create_connection(("127.0.0.1", port), timeout=5))
+                stack.enter_context(connect(port))
             rows.append(latency(url, f"{MUTE} mute connections", seconds))
+        with ExitStack() as stack:
+            for _ in range(20):
+                stack.enter_context(ask_and_never_read(port))
+            rows.append(latency(url, "320 calls whose answers nobody reads", seconds))
+        with ExitStack() as stack:
+            for k in range(RTDE_CLIENTS):
+                client = stack.enter_context(rtde_client(rtde))
+                if k % 4:  # the others never read
+                    stack.enter_context(repeated(partial(client.recv, 1 << 16)))
+            rows.append(latency(url, f"{RTDE_CLIENTS} clients of RTDE, 4 never read", seconds))
         with repeated(lambda: flood(port)):
             rows.append(latency(url, "garbage, 64 KiB a ms at most", seconds))
         with ExitStack() as stack:

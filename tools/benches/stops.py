@@ -249,6 +249,11 @@ def figures(found: list[tuple[str, int, int]]) -> list[Row]:
         row |= {"our_cycles": float(np.median(ours)), "fewest_cycles": float(np.median(fewest))}
         for name, q in (("p50", 50), ("p90", 90), ("max", 100)):
             row[f"ratio_{name}"] = float(np.percentile(ours / fewest, q))
+        row["ratio_of_sums"] = float(ours.sum() / fewest.sum())
+        row["within_a_tenth"] = float((ours <= 1.1 * fewest).mean())
+        row["within_a_tenth_or_a_cycle"] = float(
+            (ours <= np.maximum(1.1 * fewest, fewest + 1)).mean()
+        )
         row["most_cycles_more"] = int((ours - fewest).max())
         rows.append(row)
     return rows

@@ -86,39 +86,17 @@ void write_all(int fd, std::string_view content, const std::string& path) {
   }
 }
 
-/// A new file beside `target`: rename is atomic only within one file system. Gone with the object,
-/// unless it was renamed. Its rights are those of any new file.
-class Aside {
- public:
-  Aside(const std::filesystem::path& target, const std::string& path)
-      : name_(free_name(target)),
-        file_(::open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666)) {
-    if (file_.get() < 0) fail("cannot create a file beside it", path);
-    // Held until the process ends, however it ends: tells others that this is no leftover.
-    ::flock(file_.get(), LOCK_EX | LOCK_NB);
-  }
-  ~Aside() { ::unlink(name_.c_str()); }
-  Aside(const Aside&) = delete;
-  Aside& operator=(const Aside&) = delete;
-  [[nodiscard]] int fd() const { return file_.get(); }
-  [[nodiscard]] const std::string& name() const { return name_; }
+/// A name beside `target` that is nobody else's: this process, and a count within it. What a
+/// process of that number that was killed left there is removed.
+std::string free_name(const std::filesystem::path& target) {
+  static std::atomic<unsigned> count{0};
+  const std::string suffix = "." + std::to_string(::getpid()) + "-" + std::to_string(count++);
+  std::string name = (target.parent_path() / ("." + target.filename().string() + suffix)).string();
+  ::unlink(name.c_str());
+  return name;
+}
 
- private:
-  /// Nobody else's: this process, and a count within it.
-  static std::string free_name(const std::filesystem::path& target) {
-    static std::atomic<unsigned> count{0};
-    const std::string suffix = "." + std::to_string(::getpid()) + "-" + std::to_string(count++);
-    std::string name =
-        (target.parent_path() / ("." + target.filename().string() + suffix)).string();
-    ::unlink(name.c_str());  // left behind by a process of that number that was killed
-    return name;
-  }
-
-  std::string name_;
-  Descriptor file_;
-};
-
-/// The process that a name made by Aside for `target` tells, or 0 for any other name.
+/// The process that a name made by free_name() for `target` tells, or 0 for any other name.
 pid_t maker_of(const std::string& name, const std::filesystem::path& target) {
   const std::string start = "." + target.filename().string() + ".";
   if (name.compare(0, start.size(), start) != 0) return 0;
@@ -127,6 +105,10 @@ pid_t maker_of(const std::string& name, const std::filesystem::path& target) {
   const auto [dash, no_number] = std::from_chars(name.data() + start.size(), end, process);
   if (no_number != std::errc() || dash == end || *dash != '-' || dash + 1 == end) return 0;
   return std::all_of(dash + 1, end, [](char c) { return c >= '0' && c <= '9'; }) ? process : 0;
+}
+
+std::filesystem::path folder_of(const std::filesystem::path& target) {
+  return target.has_parent_path() ? target.parent_path() : std::filesystem::path(".");
 }
 
 /// Removes what killed processes left beside `target`. A file whose process lives is not touched,
@@ -145,41 +127,102 @@ void remove_leftovers(const std::filesystem::path& target, const std::filesystem
   }
 }
 
-/// A device or a pipe has no old content to keep: it is written to, never replaced.
-void write_through(const std::string& path, std::string_view content) {
-  const Descriptor file(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
-  if (file.get() < 0) fail("cannot open", path);
-  write_all(file.get(), content, path);
-}
-
 }  // namespace
 
-void write_file_atomically(const std::string& path, std::string_view content) {
+/// The open file: a new one beside the target, since rename is atomic only within one file system,
+/// or the device or pipe itself, which has no old content to keep.
+class AtomicFile::Open {
+ public:
+  /// A device.
+  explicit Open(const std::string& path) : file_(::open(path.c_str(), O_WRONLY | O_CLOEXEC)) {
+    if (file_.get() < 0) fail("cannot open", path);
+  }
+  /// A file beside `target`. Its rights are those of any new file.
+  Open(std::filesystem::path target, const std::string& path)
+      : target_(std::move(target)),
+        name_(free_name(target_)),
+        file_(::open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666)) {
+    if (file_.get() < 0) fail("cannot create a file beside it", path);
+    // Held until the process ends, however it ends: tells others that this is no leftover.
+    ::flock(file_.get(), LOCK_EX | LOCK_NB);
+  }
+  /// Gone with the object, unless it was renamed; a child that was forked meanwhile leaves it.
+  ~Open() {
+    if (!name_.empty() && maker_ == ::getpid()) ::unlink(name_.c_str());
+  }
+  Open(const Open&) = delete;
+  Open& operator=(const Open&) = delete;
+
+  [[nodiscard]] int fd() const { return file_.get(); }
+
+  /// To the disk, and under the target's name.
+  void put_in_place(const std::string& path) {
+    if (name_.empty()) return;
+    if (::fsync(fd()) != 0) fail("cannot flush to disk", path);
+    if (::rename(name_.c_str(), target_.c_str()) != 0) fail("cannot rename into place", path);
+    name_.clear();
+    const Descriptor directory(
+        ::open(folder_of(target_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    if (directory.get() < 0 || ::fsync(directory.get()) != 0) {
+      fail("written, but the folder could not be flushed to disk", path);
+    }
+  }
+
+ private:
+  std::filesystem::path target_;
+  std::string name_;  ///< empty: nothing is to be removed
+  pid_t maker_ = ::getpid();
+  Descriptor file_;
+};
+
+AtomicFile::AtomicFile(const std::string& path) : path_(path) {
   require_whole(path);
   struct stat old{};
   const bool exists = ::stat(path.c_str(), &old) == 0;
   if (exists && !S_ISREG(old.st_mode)) {
-    write_through(path, content);
+    open_ = std::make_unique<Open>(path);
     return;
   }
   // A link stays a link: what it points to is replaced.
   std::error_code unresolved;
   std::filesystem::path target = std::filesystem::weakly_canonical(path, unresolved);
   if (unresolved) target = path;
-  const std::filesystem::path folder =
-      target.has_parent_path() ? target.parent_path() : std::filesystem::path(".");
-
-  remove_leftovers(target, folder);
-  const Aside aside(target, path);
-  write_all(aside.fd(), content, path);
-  if (exists && ::fchmod(aside.fd(), old.st_mode & 07777U) != 0)
+  remove_leftovers(target, folder_of(target));
+  open_ = std::make_unique<Open>(std::move(target), path);
+  // Before the first byte: who may not read the old content may not read the new.
+  if (exists && ::fchmod(open_->fd(), old.st_mode & 07777U) != 0)
     fail("cannot set the rights", path);
-  if (::fsync(aside.fd()) != 0) fail("cannot flush to disk", path);
-  if (::rename(aside.name().c_str(), target.c_str()) != 0) fail("cannot rename into place", path);
-  const Descriptor directory(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (directory.get() < 0 || ::fsync(directory.get()) != 0) {
-    fail("written, but the folder could not be flushed to disk", path);
-  }
+}
+
+AtomicFile::~AtomicFile() = default;
+
+void AtomicFile::write(std::string_view piece) {
+  require_open();
+  write_all(open_->fd(), piece, path_);
+}
+
+void AtomicFile::commit() {
+  require_open();
+  open_->put_in_place(path_);
+  open_.reset();
+}
+
+void AtomicFile::discard() { open_.reset(); }
+
+void AtomicFile::require_open() const {
+  if (open_) return;
+  Problem problem;
+  problem.code = ErrorCode::kFile;
+  problem.file = path_;
+  problem.message = "cannot write: the file was committed or discarded before";
+  problem.ways_out = {"begin another one"};
+  throw MotionError(std::move(problem));
+}
+
+void write_file_atomically(const std::string& path, std::string_view content) {
+  AtomicFile file(path);
+  file.write(content);
+  file.commit();
 }
 
 std::string read_file(const std::string& path) {

@@ -38,10 +38,22 @@ class Writer {
   std::size_t size_ = 0;
 };
 
-/// Reads one number after the other, of as many bytes as it has been found to need.
+/// Reads one number after the other.
 class Reader {
  public:
-  explicit Reader(std::span<const std::uint8_t> bytes) : bytes_(bytes.subspan(kHead)) {}
+  /// The bytes behind the head, where it and the size are as they have to be.
+  Flaw open(std::span<const std::uint8_t> bytes, const Magic& magic, int joints,
+            std::size_t size) noexcept {
+    if (bytes.size() < kHead) return Flaw::kSize;
+    if (!std::equal(magic.begin(), magic.end(), bytes.begin())) return Flaw::kMagic;
+    if (bytes[4] != kFrameVersion) return Flaw::kVersion;
+    if (bytes[6] != joints) return Flaw::kJoints;
+    kind_ = bytes[5];
+    bytes_ = bytes.subspan(kHead);
+    return bytes.size() == size ? Flaw::kNone : Flaw::kSize;
+  }
+  [[nodiscard]] std::uint8_t kind() const noexcept { return kind_; }
+  /// @pre opened, and of as many bytes as are taken
   template <typename Unsigned>
   Unsigned take() noexcept {
     Unsigned value = 0;
@@ -57,17 +69,9 @@ class Reader {
   }
 
  private:
+  std::uint8_t kind_ = 0;
   std::span<const std::uint8_t> bytes_;
 };
-
-Flaw check_head(std::span<const std::uint8_t> bytes, const Magic& magic, int joints,
-                std::size_t size) noexcept {
-  if (bytes.size() < kHead) return Flaw::kSize;
-  if (!std::equal(magic.begin(), magic.end(), bytes.begin())) return Flaw::kMagic;
-  if (bytes[4] != kFrameVersion) return Flaw::kVersion;
-  if (bytes[6] != joints) return Flaw::kJoints;
-  return bytes.size() == size ? Flaw::kNone : Flaw::kSize;
-}
 
 }  // namespace
 
@@ -96,10 +100,10 @@ std::size_t encode(const Answer& answer, Datagram& datagram) noexcept {
 
 Flaw decode(std::span<const std::uint8_t> bytes, int joints, Command& command) noexcept {
   const std::size_t size = 32 + 16 * static_cast<std::size_t>(joints);
-  const Flaw flaw = check_head(bytes, kCommand, joints, size);
-  if (flaw != Flaw::kNone) return flaw;
-  Reader reader(bytes);
-  command.order = static_cast<Order>(bytes[5]);
+  Reader reader;
+  if (const Flaw flaw = reader.open(bytes, kCommand, joints, size); flaw != Flaw::kNone)
+    return flaw;
+  command.order = static_cast<Order>(reader.kind());
   command.sequence = reader.take<std::uint64_t>();
   command.stamp = static_cast<std::int64_t>(reader.take<std::uint64_t>());
   command.outputs = reader.take<std::uint64_t>();
@@ -110,10 +114,9 @@ Flaw decode(std::span<const std::uint8_t> bytes, int joints, Command& command) n
 
 Flaw decode(std::span<const std::uint8_t> bytes, int joints, Answer& answer) noexcept {
   const std::size_t size = 40 + 8 * static_cast<std::size_t>(joints);
-  const Flaw flaw = check_head(bytes, kAnswer, joints, size);
-  if (flaw != Flaw::kNone) return flaw;
-  Reader reader(bytes);
-  answer.condition = static_cast<Condition>(bytes[5]);
+  Reader reader;
+  if (const Flaw flaw = reader.open(bytes, kAnswer, joints, size); flaw != Flaw::kNone) return flaw;
+  answer.condition = static_cast<Condition>(reader.kind());
   answer.sequence = reader.take<std::uint64_t>();
   answer.stamp = static_cast<std::int64_t>(reader.take<std::uint64_t>());
   answer.inputs = reader.take<std::uint64_t>();

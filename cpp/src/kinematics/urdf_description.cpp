@@ -6,9 +6,11 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
+#include <set>
 
 #include "kinematics/xml_bounds.hpp"
 #include "viapoint/core/error.hpp"
+#include "viapoint/core/number_range.hpp"
 #include "viapoint/core/number_text.hpp"
 #include "viapoint/kinematics/robot_description.hpp"
 
@@ -108,10 +110,43 @@ Pose to_pose(const urdf::Pose& pose) {
   return out;
 }
 
+/// Chains whose place can be told, and within the bounds of every robot.
+void require_near(const Pose& pose, const std::string& what, const std::string& source) {
+  if (!pose.matrix().allFinite()) {
+    refuse(source, what + " has an <origin> that is not finite",
+           {"write it as <origin xyz=\"0 0 0\" rpy=\"0 0 0\"/>, in metres and radians"});
+  }
+  const double farthest = pose.translation().cwiseAbs().maxCoeff();
+  if (farthest <= kLongest) return;
+  refuse(source,
+         what + " is " + number_text(farthest) + " m from what carries it; it may be up to " +
+             number_text(kLongest) + " m",
+         {"give lengths in metres"});
+}
+
 /// About or along one axis.
 bool moves(const urdf::Joint& joint) {
   return joint.type == urdf::Joint::REVOLUTE || joint.type == urdf::Joint::CONTINUOUS ||
          joint.type == urdf::Joint::PRISMATIC;
+}
+
+/// The way up from every link ends at the root: liburdfdom lets a ring of joints beside it pass.
+void require_tree(const urdf::ModelInterface& model, const std::string& source) {
+  std::set<urdf::LinkConstSharedPtr> rooted;
+  for (const auto& [name, start] : model.links_) {
+    std::set<urdf::LinkConstSharedPtr> way;
+    for (urdf::LinkConstSharedPtr link = start; link && !rooted.contains(link);
+         link = link->parent_joint ? model.getLink(link->parent_joint->parent_link_name)
+                                   : nullptr) {
+      if (way.insert(link).second) continue;
+      refuse(source,
+             "link \"" + link->name +
+                 "\" carries itself: its joints form a ring, apart from the root " + "link \"" +
+                 model.getRoot()->name + "\"",
+             {"correct the parent of joint \"" + link->parent_joint->name + "\""});
+    }
+    rooted.merge(way);
+  }
 }
 
 /// False for a link that is fixed to the root, such as the second name that many files give it.
@@ -210,6 +245,7 @@ void add_limits(RobotDescription& out, const urdf::Joint& joint, const std::stri
 RobotDescription description_from_urdf(const std::string& text, const std::string& source,
                                        const std::string& tip) {
   const urdf::ModelInterfaceSharedPtr model = parse(text, source);
+  require_tree(*model, source);
   std::vector<urdf::JointConstSharedPtr> joints;
   for (auto link = find_tip(*model, source, tip); link->parent_joint;
        link = model->getLink(link->parent_joint->parent_link_name)) {
@@ -220,15 +256,22 @@ RobotDescription description_from_urdf(const std::string& text, const std::strin
 
   RobotDescription out;
   out.name = model->getName();
+  if (out.name.empty()) {
+    refuse(source, "the robot has an empty name", {"write it as <robot name=\"...\">"});
+  }
   out.title = out.name + ", from URDF";
   out.sources = {source};
   out.chosen = {"acceleration: 10 x velocity, URDF has none",
                 "jerk: 100 x velocity, URDF has none"};
   Pose before = Pose::Identity();
   for (const auto& joint : joints) {
-    before = before * to_pose(joint->parent_to_joint_origin_transform);
-    if (joint->type == urdf::Joint::FIXED) continue;
     const std::string name = "joint \"" + joint->name + "\"";
+    before = before * to_pose(joint->parent_to_joint_origin_transform);
+    require_near(before, name, source);
+    if (joint->type == urdf::Joint::FIXED) continue;
+    if (joint->name.empty()) {
+      refuse(source, "a joint has an empty name", {"write it as <joint name=\"...\">"});
+    }
     if (!moves(*joint)) {
       refuse(source,
              name +

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <numeric>
+#include <utility>
 
 namespace viapoint {
 namespace {
@@ -17,6 +20,29 @@ std::string kind_of(const YAML::Node& node) {
     default:
       return "nothing";
   }
+}
+
+/// Letters to change, add or leave out to make one of the other (Levenshtein 1966).
+std::size_t distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i + 1);
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t change = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({change, row[j] + 1, row[j + 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+/// Whether `typed` may be a slip of the pen for `meant`: one letter of a short key, two of a longer
+/// one. Much longer ones are none, and comparing them takes long.
+bool is_slip(const std::string& typed, const std::string& meant) {
+  constexpr std::size_t kShort = 4, kLongest = 40;
+  if (meant.size() < 3 || typed.size() > kLongest) return false;
+  return distance(typed, meant) <= (meant.size() <= kShort ? 1 : 2);
 }
 
 }  // namespace
@@ -97,6 +123,12 @@ bool YamlMap::has(const std::string& key) const { return value_.node()[key].IsDe
 YamlValue YamlMap::at(const std::string& key, const std::string& add, ErrorCode code) {
   const YAML::Node node = value_.node()[key];
   if (!node.IsDefined()) {
+    for (const auto& entry : value_.node()) {
+      const YamlValue other(entry.first, value_.source(), value_.path());
+      if (!is_slip(other.text(), key)) continue;
+      other.refuse("key \"" + key + "\" is missing, there is \"" + other.text() + "\"",
+                   {"write \"" + key + "\" for \"" + other.text() + "\"", "add " + add}, code);
+    }
     value_.refuse("key \"" + key + "\" is missing", {"add " + add}, code);
   }
   return {node, value_.source(), path_of(key)};
@@ -106,9 +138,14 @@ void YamlMap::finish(const std::vector<std::string>& known) const {
   for (const auto& entry : value_.node()) {
     const YamlValue key(entry.first, value_.source(), value_.path());
     if (std::find(known.begin(), known.end(), key.text()) != known.end()) continue;
+    std::vector<std::string> ways_out;
     std::string list;
-    for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
-    key.refuse("unknown key \"" + key.text() + "\"", {"known keys here: " + list});
+    for (const std::string& name : known) {
+      list += (list.empty() ? "" : ", ") + name;
+      if (is_slip(key.text(), name)) ways_out.push_back("write \"" + name + "\"");
+    }
+    ways_out.push_back("known keys here: " + list);
+    key.refuse("unknown key \"" + key.text() + "\"", std::move(ways_out));
   }
 }
 

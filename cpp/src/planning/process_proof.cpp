@@ -12,6 +12,8 @@ namespace {
 
 /// Rounding of a speed that is kept as a limit.
 constexpr double kAbove = 1e-9;
+/// A limit that wants the tool slower by no more than this if it held the speed is none in its way.
+constexpr double kHoldable = 0.98;
 
 Pace pace_of(const TrajectoryPiece& piece, double x) {
   const auto [u, first, second] = value_slope_bend(piece.timing, x);
@@ -53,7 +55,9 @@ void ProcessProof::add(const JointLimits& limits, const TrajectoryPiece& piece,
     stretch.to = time + piece.duration;
     stretch.to_length = way_ + way;
     stretch.lowest_speed = std::min(stretch.lowest_speed, range.reached);
-    judge(limits, piece, rates);
+    const Ruling holding = judge(limits, piece, rates);
+    const bool steady = range.least >= range.most * (1.0 - kHeldWithin);
+    if (steady && holding.slower <= kHoldable) unforced_ += way;
   }
   way_ += way;
   time_ = time + piece.duration;
@@ -69,6 +73,7 @@ void ProcessProof::begin(const TrajectoryPiece& piece, double speed, double time
   open_ = true;
   rests_ = false;
   holding_ = using_ = {};
+  unforced_ = 0.0;
 }
 
 void ProcessProof::end() {
@@ -78,15 +83,17 @@ void ProcessProof::end() {
   const Ruling& ruling = holding_.slower > 1.0 ? holding_ : using_;
   stretch.limit = ruling.limit;
   stretch.joint = ruling.joint;
-  if (holding_.slower <= 1.0 && rests_) {
-    stretch.limit = "rest";
+  const bool unforced = unforced_ > 0.5 * (stretch.to_length - stretch.from_length);
+  if (unforced || (holding_.slower <= 1.0 && rests_)) {
+    stretch.limit = unforced ? "timing" : "rest";
     stretch.joint.reset();
   }
 }
 
-void ProcessProof::judge(const JointLimits& limits, const TrajectoryPiece& piece,
-                         const ToolRates& rates) {
+Ruling ProcessProof::judge(const JointLimits& limits, const TrajectoryPiece& piece,
+                           const ToolRates& rates) {
   constexpr int kParts = 8;
+  Ruling holding;
   const auto look = [&](Ruling& worst, const Pace& pace, const RateAt& linear,
                         const RateAt& angular) {
     TrajectoryPiece steady = piece;
@@ -105,11 +112,13 @@ void ProcessProof::judge(const JointLimits& limits, const TrajectoryPiece& piece
     const Pace pace = pace_of(piece, static_cast<double>(k) / kParts);
     const RateAt linear = rate_at(rates.linear, pace.u), angular = rate_at(rates.angular, pace.u);
     look(using_, pace, linear, angular);
-    look(holding_, pace_at_speed(linear, pace.u, rates.limits.speed), linear, angular);
+    look(holding, pace_at_speed(linear, pace.u, rates.limits.speed), linear, angular);
     if ((k == 0 || k == kParts) && linear.value.norm() * pace.rate <= 1e-6 * rates.limits.speed) {
       rests_ = true;
     }
   }
+  if (holding.slower > holding_.slower) holding_ = holding;
+  return holding;
 }
 
 std::vector<ProcessStretch> ProcessProof::take() {
@@ -145,6 +154,14 @@ Problem warning_of(const ProcessStretch& stretch) {
     problem.message += ", as the arm starts or stops there";
     problem.ways_out = {"lead in and out by moves with a zone, so that the tool is at speed there",
                         "join the moves by corners with a zone instead of stops"};
+    return problem;
+  }
+  if (stretch.limit == "timing") {
+    problem.message +=
+        ", though along most of that no limit asks for less: the timing of the whole "
+        "way from stop to stop came out too slow";
+    problem.ways_out = {"a process_speed that is a little lower or higher",
+                        "another zone at the ends of the move, or stops"};
     return problem;
   }
   problem.message += "; what rules is the " + stretch.limit;

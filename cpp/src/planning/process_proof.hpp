@@ -26,12 +26,14 @@ class ProcessProof {
  private:
   void begin(const TrajectoryPiece& piece, double speed, double time);
   void end();
-  void judge(const JointLimits& limits, const TrajectoryPiece& piece, const ToolRates& rates);
+  /// Returns what holding the speed along the piece would take of a limit.
+  Ruling judge(const JointLimits& limits, const TrajectoryPiece& piece, const ToolRates& rates);
 
   std::vector<ProcessStretch> stretches_;
   bool open_ = false;       ///< the last of stretches_ may go on
   bool rests_ = false;      ///< the arm starts or stops in it
   Ruling holding_, using_;  ///< what holding the speed would take of a limit, and what is taken
+  double unforced_ = 0.0;   ///< the way in it at a speed kept below any that a limit asks for [m]
   double time_ = -1.0, way_ = 0.0;  ///< where the last piece ended [s], and the way up to there [m]
 };
 

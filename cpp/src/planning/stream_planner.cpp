@@ -8,10 +8,11 @@
 
 #include "planning/itinerary.hpp"
 #include "planning/motion_parts.hpp"
-#include "planning/output_places.hpp"
 #include "planning/path_timer.hpp"
+#include "planning/pending_outputs.hpp"
 #include "planning/section.hpp"
 #include "planning/section_builder.hpp"
+#include "planning/told_steps.hpp"
 #include "planning/tool_proof.hpp"
 
 namespace viapoint {
@@ -20,31 +21,14 @@ namespace {
 using planning::Dwell;
 using planning::Item;
 using planning::Leg;
-using planning::Output;
 using planning::SectionPart;
 
 /// Legs that the first chunk of a section has at least, and that every later one brings: few at
 /// first, so that motion begins soon.
 constexpr int kFirstLegs = 3;
 constexpr int kMostLegs = 24;
-/// Times that differ by less are the same [s].
-constexpr double kMoment = 1e-9;
 /// Pieces of path that a chunk goes on by at most.
 constexpr size_t kMostPieces = 96;
-
-/// What is known of a step until its motion has been handed out.
-struct Known {
-  int step = 0;
-  SourceLine source;
-  double position_deviation = 0.0, angle_deviation = 0.0;
-};
-
-/// An output that has not been passed.
-struct Pending {
-  Output output;
-  std::optional<size_t> piece;  ///< of the chunk handed out last, where it changes
-  bool in_tail = false;         ///< of the chunk before it, after that one was to be left
-};
 
 /// A part of a section, or a rest, of one arm.
 struct Stage {
@@ -69,7 +53,7 @@ class StreamPlanner::Line {
                         {"begin another stream where this one ends"});
     }
     const int index = steps_++;
-    known_.push_back({index, step.source});
+    told_.add(index, step.source);
     walk_.take(step, index);
     if (auto problem = take_found()) {
       end();
@@ -98,12 +82,9 @@ class StreamPlanner::Line {
   }
 
   MotionChunk after_rest() {
-    // What the end of the chunk before has switched is switched.
-    std::erase_if(outputs_, [](const Pending& pending) { return pending.in_tail; });
-    for (Pending& pending : outputs_) pending.piece.reset();
+    outputs_.miss();
     last_ = std::move(before_);
     duration_ = duration_before_;
-    due_after_ = due_after_before_;
     planning::PathTimer& timer = timer_ ? *timer_ : *over_;
     timer.begin_after_missing();
     ++stops_;
@@ -137,11 +118,7 @@ class StreamPlanner::Line {
   void take(Item item) {
     if (auto* leg = std::get_if<Leg>(&item)) {
       if (leg->robot != arm_) change_tool(leg->robot);
-      for (Known& known : known_) {
-        if (known.step != leg->step) continue;
-        known.position_deviation = leg->position_deviation;
-        known.angle_deviation = leg->angle_deviation;
-      }
+      told_.note(*leg);
       zone_ = leg->options.zone;
       last_leg_ = leg->step;
       at_ = leg->goal;
@@ -152,7 +129,7 @@ class StreamPlanner::Line {
         ready_.push_back({arm_, planning::rest_at(at_, *dwell)});
       }
     } else {
-      outputs_.push_back({std::get<Output>(item), std::nullopt, false});
+      outputs_.add(std::get<planning::Output>(std::move(item)));
     }
   }
 
@@ -246,71 +223,23 @@ class StreamPlanner::Line {
   /// rest where the program does not move at all.
   std::optional<MotionChunk> at_last() {
     if (!ended_ || handed_out_last_) return std::nullopt;
-    if (steps_ > 0) drop_passed(duration_);
-    if (steps_ == 0 || (handed_out_ && outputs_.empty() && !(due_after_ > 0.0))) {
+    if (steps_ > 0) outputs_.leave(last_, duration_);
+    if (steps_ == 0 || (handed_out_ && outputs_.none_left())) {
       handed_out_last_ = true;  // before the end was known
       return std::nullopt;
     }
     std::vector<TrajectoryPiece> pieces;
     const size_t rests =
-        std::max<size_t>(1, (outputs_.size() + kMaxOutputsAPiece - 1) / kMaxOutputsAPiece);
+        std::max<size_t>(1, (outputs_.count() + kMaxOutputsAPiece - 1) / kMaxOutputsAPiece);
     for (size_t k = 0; k < rests; ++k) {
       pieces.push_back(planning::rest_at(at_, planning::kLastOutputs, steps_));
     }
-    pieces.back().duration += std::max(due_after_, latest_time());
+    pieces.back().duration += outputs_.latest();
     MotionChunk chunk;
     chunk.begin = duration_;
     finish(chunk, arm_, std::move(pieces), true);
     warn_of(chunk);
     return chunk;
-  }
-
-  /// Outputs that have changed before the chunk handed out last is left at `leave`.
-  void drop_passed(double leave) {
-    std::vector<double> left;  // when each piece of it begins, before that
-    for (double time = 0.0; const TrajectoryPiece& piece : last_) {
-      left.push_back(leave - time);
-      time += piece.duration;
-    }
-    // At the very moment, but for rounding, the next chunk changes it, too.
-    std::erase_if(outputs_, [&](const Pending& pending) {
-      return pending.piece && left[*pending.piece] > kMoment;
-    });
-    for (Pending& pending : outputs_) {
-      pending.in_tail = pending.piece.has_value();
-      pending.piece.reset();
-      if (!pending.in_tail) planning::move_point(pending.output, last_, leave);
-    }
-  }
-
-  /// Of the outputs that nothing follows, how long the last is to come after the end [s].
-  [[nodiscard]] double latest_time() const {
-    double latest = 0.0;
-    for (const Pending& pending : outputs_) {
-      latest = std::max(latest, pending.output.change.time);
-    }
-    return latest;
-  }
-
-  void attach(std::vector<TrajectoryPiece>& pieces, std::vector<ToolLimits>& tool, bool move_ends) {
-    std::vector<Output> outputs;
-    for (const Pending& pending : outputs_) outputs.push_back(pending.output);
-    const planning::Surroundings around{!handed_out_, ended_ && ready_.empty() && !timer_,
-                                        move_ends};
-    const auto attached = planning::attach_outputs(pieces, tool, outputs, around);
-    for (size_t i = 0; i < attached.size(); ++i) outputs_[i].piece = attached[i];
-  }
-
-  /// Notes how long after the end the last output of all comes.
-  void note_due(const MotionChunk& chunk) {
-    due_after_before_ = due_after_;
-    due_after_ -= chunk.motion.duration() - (duration_ - chunk.begin);
-    for (const Pending& pending : outputs_) {
-      if (!pending.piece) continue;
-      const double at = chunk.motion.start_of(*pending.piece) + pending.output.change.time;
-      due_after_ = std::max(due_after_, at - chunk.motion.duration());
-    }
-    due_after_ = std::max(due_after_, 0.0);
   }
 
   /// Looks for process speeds that are not held in the chunk handed out last, run until `end`.
@@ -325,17 +254,18 @@ class StreamPlanner::Line {
   void finish(MotionChunk& chunk, const RobotPtr& of, std::vector<TrajectoryPiece> pieces,
               bool move_ends, std::vector<ToolLimits> tool = {}) {
     const RobotModel& arm = *of;
-    drop_passed(chunk.begin);
+    outputs_.leave(last_, chunk.begin);
     follow_process(chunk.begin);
     // A stretch may be told one chunk after its move.
-    if (!last_.empty()) {
-      while (known_.size() > 1 && known_.front().step < last_.front().move) known_.pop_front();
-    }
-    attach(pieces, tool, move_ends);
+    if (!last_.empty()) told_.drop_before(last_.front().move);
+    outputs_.attach(pieces, tool,
+                    {.from_start = !handed_out_,
+                     .to_end = ended_ && ready_.empty() && !timer_,
+                     .move_ends = move_ends});
     const std::optional<JointState> from = state_at(chunk.begin);
     const double manipulability = planning::least_manipulability(arm, pieces);
     chunk.motion = Trajectory(std::move(pieces), arm.limits(), from);
-    note_due(chunk);
+    outputs_.hand_out(chunk.motion, duration_ - chunk.begin);
     duration_before_ = std::exchange(duration_, chunk.motion.duration());
     before_ = std::exchange(last_, chunk.motion.pieces());
 
@@ -350,17 +280,13 @@ class StreamPlanner::Line {
     last_arm_ = of;
     last_tool_ = std::move(tool);
     followed_ = false;
-    for (const Known& known : known_) {
-      if (known.step < chunk.motion.pieces().front().move) continue;
-      if (known.step > chunk.motion.pieces().back().move) break;
-      certificate.path_deviation = std::max(certificate.path_deviation, known.position_deviation);
-      certificate.angle_deviation = std::max(certificate.angle_deviation, known.angle_deviation);
-    }
+    told_.add_deviations(certificate, chunk.motion.pieces().front().move,
+                         chunk.motion.pieces().back().move);
     for (const CornerOutcome& corner : chunk.corners) {
       certificate.zone_deviation = std::max(certificate.zone_deviation, corner.cut);
     }
     for (Problem problem : certificate.problems) {
-      locate(problem);
+      told_.locate(problem);
       throw MotionError(std::move(problem));
     }
     handed_out_ = true;
@@ -380,31 +306,21 @@ class StreamPlanner::Line {
       if (corner.reason.empty()) continue;
       Problem problem = planning::warning_of(corner);
       problem.move = corner.move;
-      locate(problem);
+      told_.locate(problem);
       chunk.warnings.push_back(std::move(problem));
     }
     chunk.process_stretches = timer_ ? process_.take_ended() : process_.take();
     for (const ProcessStretch& stretch : chunk.process_stretches) {
       Problem problem = planning::warning_of(stretch);
       problem.move = stretch.move;
-      locate(problem);
+      told_.locate(problem);
       chunk.warnings.push_back(std::move(problem));
     }
     chunk.last = handed_out_last_ = is_last();
   }
 
   [[nodiscard]] bool is_last() const {
-    return ended_ && ready_.empty() && !timer_ && !(due_after_ > 0.0) &&
-           std::ranges::all_of(outputs_,
-                               [](const Pending& pending) { return pending.piece.has_value(); });
-  }
-
-  void locate(Problem& problem) const {
-    for (const Known& known : known_) {
-      if (known.step == problem.move.value_or(-1)) {
-        planning::locate(problem, known.source, known.step);
-      }
-    }
+    return ended_ && ready_.empty() && !timer_ && outputs_.all_come();
   }
 
   RobotPtr arm_;    ///< with the tool of the steps that come
@@ -416,10 +332,10 @@ class StreamPlanner::Line {
   int last_leg_ = -1;  ///< since the arm rested
   Zone zone_;          ///< of it
 
-  std::deque<Stage> ready_;       ///< decided, not handed out
-  size_t used_ = 0;               ///< pieces of path of the first that have been handed out
-  std::vector<Pending> outputs_;  ///< in the order told
-  std::deque<Known> known_;       ///< steps not passed yet
+  std::deque<Stage> ready_;  ///< decided, not handed out
+  size_t used_ = 0;          ///< pieces of path of the first that have been handed out
+  planning::PendingOutputs outputs_;
+  planning::ToldSteps told_;  ///< those not passed yet
   std::vector<Problem> warnings_;
   std::vector<CornerOutcome> tool_changes_;
 
@@ -432,7 +348,6 @@ class StreamPlanner::Line {
 
   bool handed_out_ = false, handed_out_last_ = false;
   double duration_ = 0.0;              ///< of the chunk handed out last
-  double due_after_ = 0.0;             ///< its end the last output comes [s]
   std::vector<TrajectoryPiece> last_;  ///< its pieces
   std::vector<ToolLimits> last_tool_;  ///< what they allow the tool
   RobotPtr last_arm_;
@@ -441,7 +356,6 @@ class StreamPlanner::Line {
   planning::ProcessProof process_;  ///< of all chunks up to there
   // Of the chunk before, for when that one is run to its end.
   double duration_before_ = 0.0;
-  double due_after_before_ = 0.0;
   std::vector<TrajectoryPiece> before_;
 };
 

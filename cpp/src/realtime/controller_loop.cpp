@@ -29,7 +29,10 @@ struct ControllerLoop::Impl {
     const bool is_virtual = desk.clock().is_virtual();
     if (options.lock_memory && !is_virtual) memory = lock_memory(shortcomings);
     start_threads();
-    if (!is_virtual) raise_priority(loop, options.priority, shortcomings);
+    if (is_virtual) return;
+    raise_priority(loop, options.priority, shortcomings);
+    if (options.processor) keep_on(loop, *options.processor, shortcomings);
+    if (options.keep_awake) awake = keep_processors_awake(shortcomings);
   }
 
   ~Impl() {
@@ -81,6 +84,7 @@ struct ControllerLoop::Impl {
 
   RunDesk desk;
   MemoryLock memory;
+  WakefulProcessors awake;
   std::vector<std::string> shortcomings;
   std::thread companion, loop;
 };
@@ -132,6 +136,10 @@ Measurement ControllerLoop::measured() const {
 
 LoopCycle ControllerLoop::newest_cycle() const { return impl_->desk.channels().snapshot.read(); }
 
+std::vector<ObservedCycle> ControllerLoop::observed(std::uint64_t from, std::size_t most) const {
+  return impl_->desk.channels().tape.read(from, most);
+}
+
 void ControllerLoop::switch_outputs(std::uint64_t mask, std::uint64_t values) {
   impl_->desk.channels().switches.set(mask, values);
 }
@@ -147,10 +155,9 @@ JointVector ControllerLoop::position() const { return impl_->desk.channels().sna
 
 std::string ControllerLoop::fault() const { return impl_->desk.fault(); }
 
-std::vector<LogRecord> ControllerLoop::fault_cycles() const {
-  if (!impl_->desk.channels().faulted.load(std::memory_order_acquire)) return {};
-  return impl_->desk.channels().history.records();
-}
+void ControllerLoop::require_power() const { impl_->desk.require_power(); }
+
+std::vector<LogRecord> ControllerLoop::fault_cycles() const { return impl_->desk.fault_cycles(); }
 
 std::vector<std::string> ControllerLoop::shortcomings() const { return impl_->shortcomings; }
 

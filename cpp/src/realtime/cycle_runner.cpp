@@ -1,6 +1,8 @@
 #include "realtime/cycle_runner.hpp"
 
+#include <algorithm>
 #include <chrono>
+#include <span>
 #include <thread>
 #include <utility>
 
@@ -38,6 +40,8 @@ void CycleRunner::wait_for_cycle() noexcept {
   due_ += (1 + late_cycles_) * cycle_;
   clock_.sleep_until(due_);
   woke_ = clock_.now();
+  // A clock that goes back, which CLOCK_MONOTONIC never does, must not leave the drive without.
+  due_ = std::min(due_, woke_);
   late_cycles_ = (woke_ - due_) / cycle_;
 }
 
@@ -53,8 +57,10 @@ void CycleRunner::do_cycle() noexcept VIAPOINT_NONBLOCKING {
   // Read first and acted on last: a jog comes with the pause that was wished before it.
   const bool is_jog = channels_.jog.read(wished_);
   if (motion_ != nullptr) {
+    // The safest of one cycle last: who pauses is not overruled by an input that resumes.
+    take_input(motion_->reactions.front());
     take_wish();
-    take_inputs();
+    for (auto& place : std::span(motion_->reactions).subspan<1>()) take_input(place);
   }
   if (motion_ != nullptr && motion_->open) take_link();
   if (is_jog) jog();
@@ -76,19 +82,18 @@ void CycleRunner::do_cycle() noexcept VIAPOINT_NONBLOCKING {
   guard_.look_at(status, measurement_, late_cycles_);
   if (status == DriveStatus::kGuided) follow_hand();
   const bool is_dead = status == DriveStatus::kFault || status == DriveStatus::kPowerLost;
-  const bool fault = is_dead || is_at_rest;
-  if (fault) interpolator_.abandon();
-  channels_.jogging.store(interpolator_.jogging() || (off_path_ && !fault),
-                          std::memory_order_release);
+  fails_ = is_dead || is_at_rest;
+  if (fails_) interpolator_.abandon();
+  channels_.jogging.store(interpolator_.jogging() || stops_off_path(), std::memory_order_release);
   channels_.jog_block.store(interpolator_.jog_block(), std::memory_order_relaxed);
   show();
   // Last: who sees the hand off the arm sees the setpoint where it has left it.
   channels_.guided.store(status == DriveStatus::kGuided, std::memory_order_release);
   record(end - begin);
-  if (motion_ != nullptr && off_path_) {
+  if (motion_ != nullptr && stops_off_path()) {
     motion_->state.store(RunState::kStopping, std::memory_order_release);
   }
-  if (fault) {
+  if (fails_) {
     fail(status);
   } else if (motion_ != nullptr && !off_path_) {
     finish();
@@ -145,14 +150,12 @@ void CycleRunner::hold_lease() noexcept VIAPOINT_NONBLOCKING {
   if (interpolator_.jogging()) interpolator_.stop_jog();
 }
 
-void CycleRunner::take_inputs() noexcept VIAPOINT_NONBLOCKING {
-  for (std::atomic<InputReaction>& place : motion_->reactions) {
-    InputReaction reaction = place.load(std::memory_order_acquire);
-    if (!reaction.is_met_by(measurement_.inputs)) continue;
-    interpolator_.wish(reaction.wish);
-    // One that has been put in its place meanwhile stays.
-    place.compare_exchange_strong(reaction, InputReaction{});
-  }
+void CycleRunner::take_input(std::atomic<InputReaction>& place) noexcept VIAPOINT_NONBLOCKING {
+  InputReaction reaction = place.load(std::memory_order_acquire);
+  if (!reaction.is_met_by(measurement_.inputs)) return;
+  interpolator_.wish(reaction.wish);
+  // One that has been put in its place meanwhile stays.
+  place.compare_exchange_strong(reaction, InputReaction{});
 }
 
 void CycleRunner::take_wish() noexcept VIAPOINT_NONBLOCKING {
@@ -178,6 +181,8 @@ void CycleRunner::begin_next() noexcept VIAPOINT_NONBLOCKING {
   motion_ = channels_.motions.pop();
   if (motion_ == nullptr) return;
   interpolator_.set_override(channels_.override_share.load(std::memory_order_relaxed));
+  // What was switched by hand before the motion was told is no change that comes after its own.
+  outputs_.switch_by_hand(channels_.switches);
   interpolator_.set_outputs(outputs_.sent());
   outputs_.hand_over();
   interpolator_.begin(*motion_->trajectory, motion_->open);
@@ -196,7 +201,7 @@ void CycleRunner::refuse_next() noexcept VIAPOINT_NONBLOCKING {
 void CycleRunner::show() noexcept VIAPOINT_NONBLOCKING {
   ++shown_.cycle;
   shown_.stamp = woke_;
-  shown_.state = interpolator_.state();
+  shown_.state = stops_off_path() ? RunState::kStopping : interpolator_.state();
   shown_.rate = interpolator_.rate();
   shown_.override_share = channels_.override_share.load(std::memory_order_relaxed);
   shown_.q = setpoint_.q;
@@ -205,10 +210,12 @@ void CycleRunner::show() noexcept VIAPOINT_NONBLOCKING {
   shown_.outputs = setpoint_.outputs;
   shown_.measurement = measurement_;
   channels_.snapshot.write(shown_);
+  channels_.tape.write(shown_);
 }
 
 void CycleRunner::record(std::int64_t compute) noexcept VIAPOINT_NONBLOCKING {
   interpolator_.describe(setpoint_, record_);
+  if (stops_off_path()) record_.state = RunState::kStopping;
   record_.cycle = motion_ != nullptr ? cycle_of_run_ : setpoint_.cycle;
   record_.stamp = woke_;
   record_.latency = woke_ - due_;

@@ -9,6 +9,7 @@
 
 #include "realtime/cycle_history.hpp"
 #include "realtime/jog_channel.hpp"
+#include "realtime/measurement_tape.hpp"
 #include "realtime/output_panel.hpp"
 #include "realtime/snapshot.hpp"
 #include "viapoint/realtime/clock.hpp"
@@ -30,12 +31,13 @@ static_assert(std::atomic<Lease>::is_always_lock_free);
 
 /// What the loop's threads share. Each member says who writes it.
 struct LoopChannels {
-  explicit LoopChannels(int joints) : snapshot(joints) {}
+  explicit LoopChannels(int joints) : snapshot(joints), tape(joints) {}
 
   MotionQueue motions;
   /// Eight seconds at 500 Hz for the companion to come round.
   boost::lockfree::spsc_queue<LogRecord, boost::lockfree::capacity<4096>> log;
   Snapshot snapshot;                        ///< tick
+  MeasurementTape tape;                     ///< tick
   JogChannel jog;                           ///< ordinary threads, one at a time
   OutputSwitches switches;                  ///< ordinary threads
   std::atomic<bool> jogging{false};         ///< tick
@@ -72,8 +74,8 @@ class CycleRunner {
   /// Acts on a wish to jog, and says what came of it.
   void jog() noexcept VIAPOINT_NONBLOCKING;
   void take_wish() noexcept VIAPOINT_NONBLOCKING;
-  /// Does what the motion is to do about the inputs that were measured last.
-  void take_inputs() noexcept VIAPOINT_NONBLOCKING;
+  /// Does what the motion is to do about an input, if it was measured so.
+  void take_input(std::atomic<InputReaction>& place) noexcept VIAPOINT_NONBLOCKING;
   /// Brings to rest what moves on behalf of somebody who is not heard of any more.
   void hold_lease() noexcept VIAPOINT_NONBLOCKING;
   /// Goes over to the longer motion that an open one has become, and to its end.
@@ -85,6 +87,8 @@ class CycleRunner {
   void follow_hand() noexcept VIAPOINT_NONBLOCKING;
   /// The guard's last word on the setpoint; true where the arm rests after a breach.
   [[nodiscard]] bool guard() noexcept VIAPOINT_NONBLOCKING;
+  /// The setpoints are the guard's own: whatever the interpolator would do.
+  [[nodiscard]] bool stops_off_path() const noexcept { return off_path_ && !fails_; }
   /// Ends everything: nothing is told the drive any more.
   void fail(DriveStatus status) noexcept VIAPOINT_NONBLOCKING;
   /// Tells whoever looks on.
@@ -109,6 +113,7 @@ class CycleRunner {
   /// setpoint has brought the arm.
   bool arriving_ = false;
   bool off_path_ = false;    ///< the guard stops each joint
+  bool fails_ = false;       ///< everything ends with this cycle
   bool is_resting_ = false;  ///< after a breach, since the cycle before
   std::uint64_t cycle_of_run_ = 0;
   JointVector wished_;  ///< joint velocities

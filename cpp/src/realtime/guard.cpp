@@ -19,6 +19,29 @@ bool is_within(double value, double limit) noexcept {
   return std::abs(value) <= limit * (1.0 + kSlack);
 }
 
+/// Relative slack of what a state leads to: rates within their own slack make it a few times that.
+constexpr double kForesight = 4e-6;
+
+/// The velocity that no jerk within its limit can keep a joint from reaching: v + a|a|/(2 J).
+double peak_velocity(double velocity, double acceleration, double jerk) noexcept {
+  return velocity + 0.5 * acceleration * std::abs(acceleration) / jerk;
+}
+
+/// How far a joint goes on, whatever it does within its limits: the braking of the quickest rest,
+/// a(t) = max(a - J t, -A), until its velocity is zero. Signed as the velocity.
+double least_excursion(double velocity, double acceleration, double most_acceleration,
+                       double jerk) noexcept {
+  const double v = std::abs(velocity);
+  const double a = velocity < 0.0 ? -acceleration : acceleration;
+  const double A = most_acceleration, J = jerk;
+  const double until_zero = (a + std::sqrt(a * a + 2.0 * J * v)) / J;
+  const double until_most = (a + A) / J;
+  const double t = std::max(std::min(until_zero, until_most), 0.0);
+  const double left = std::max(v + t * (a - 0.5 * J * t), 0.0);
+  const double way = t * (v + t * (0.5 * a - J * t / 6.0)) + 0.5 * left * left / A;
+  return std::copysign(way, velocity);
+}
+
 /// An encoder tells a step larger than its joint can make, and than its own noise [rad or m].
 constexpr double kEncoderNoise = 1e-3;
 constexpr double kEncoderSpeeds = 2.0;
@@ -91,6 +114,17 @@ Breach Guard::judge(const Setpoint& next) const noexcept VIAPOINT_NONBLOCKING {
     const double jerk = (next.qdd[i] - qdd_[i]) / cycle_;
     if (!is_within(jerk, j + kSlack * a / cycle_)) return {Kind::kJerk, i, jerk, j};
     if (!is_within(next.qddd[i], j)) return {Kind::kJerk, i, next.qddd[i], j};
+    // What no motion within the limits can do any more is seen while the joint can still stop.
+    const double peak = peak_velocity(next.qd[i], next.qdd[i], j);
+    if (!is_within(peak, v + kForesight * v)) return {Kind::kVelocity, i, peak, v};
+    const double reach =
+        next.q[i] + (1.0 - kForesight) * least_excursion(next.qd[i], next.qdd[i], a, j);
+    if (reach > most + kStartTolerance && next.qd[i] > 0.0 && step > 0.0) {
+      return {Kind::kPosition, i, reach, most};
+    }
+    if (reach < least - kStartTolerance && next.qd[i] < 0.0 && step < 0.0) {
+      return {Kind::kPosition, i, reach, least};
+    }
     const double beside = step - 0.5 * cycle_ * (next.qd[i] + qd_[i]);
     const double allowed = cycle_ * cycle_ * cycle_ * j / 12.0 + kStartTolerance;
     if (!is_within(beside, allowed)) return {Kind::kDerivatives, i, beside, allowed};

@@ -59,47 +59,6 @@ void Interpolator::begin(const Trajectory& motion, bool open) noexcept VIAPOINT_
   stop_at_gate();
 }
 
-LinkFate Interpolator::lengthen(const MotionLink& link) noexcept VIAPOINT_NONBLOCKING {
-  if (motion_ == nullptr) return LinkFate::kTooLate;
-  // Who is about to go back may still do so, as far as the present motion reaches.
-  const bool goes_back =
-      direction_ == Direction::kBackward || (wish_ == Wish::kBackward && !link.begins_at_rest);
-  if (goes_back || piece_ < link.dropped) return LinkFate::kNotYet;
-  if (!waits_ && governor_.settled_at(now_) > link.same_until) {
-    return now_.tau > link.same_until ? LinkFate::kTooLate : LinkFate::kNotYet;
-  }
-  if (waits_ && now_.tau > link.same_until) return LinkFate::kTooLate;
-  // It has been beyond on the old way, and come back: outputs there are switched, and not again.
-  if (farthest_ > link.same_until) return LinkFate::kTooLate;
-  // At its end the arm rests, whatever rate it came with; what follows begins anew.
-  const bool rests = waits_ || now_.tau >= motion_->duration();
-  timed_outputs_.lengthen(link.motion->timed_changes(), link.dropped, link.shift, farthest_,
-                          outputs_with(outputs_));
-  if (link.dropped > 0) {
-    const OutputEffect& passed = motion_->outputs_after(link.dropped - 1);
-    outputs_before_ = (outputs_before_ & ~passed.changed) | passed.on;
-  }
-  gate_.lengthen(*link.motion, link.dropped);
-  motion_ = link.motion;
-  may_go_back_ = link.begins_at_rest;
-  left_out_ += link.shift;
-  now_.tau -= link.shift;
-  shown_.tau -= link.shift;  // which a jog leaves as it is
-  anchor_ -= link.shift;
-  fresh_ -= link.shift;
-  farthest_piece_ -= link.dropped;
-  farthest_ -= link.shift;
-  lookahead_.lengthen(*motion_, link.same_until, link.shift, link.dropped);
-  if (rests) {
-    waits_ = false;
-    rest_at(now_.tau);
-    fresh_ = now_.tau;
-  }
-  enter_piece(motion_->piece_at(now_.tau));
-  stop_at_gate();
-  return LinkFate::kTaken;
-}
-
 double Interpolator::settled_time() const noexcept VIAPOINT_NONBLOCKING {
   if (motion_ == nullptr) return 0.0;
   return left_out_ +
@@ -107,7 +66,7 @@ double Interpolator::settled_time() const noexcept VIAPOINT_NONBLOCKING {
 }
 
 void Interpolator::set_override(double share) noexcept VIAPOINT_NONBLOCKING {
-  override_ = std::clamp(share, 0.0, 1.0);
+  override_ = share < kLeastOverride ? 0.0 : std::min(share, 1.0);
 }
 
 void Interpolator::wish(Wish wish) noexcept VIAPOINT_NONBLOCKING {
@@ -124,20 +83,6 @@ void Interpolator::abandon() noexcept VIAPOINT_NONBLOCKING {
   motion_ = nullptr;
   jog_.abandon();
   run_state_ = RunState::kFault;
-}
-
-void Interpolator::jog(const JointVector& velocity) noexcept VIAPOINT_NONBLOCKING {
-  if (may_be_jogged()) jog_.wish(velocity, jog_cycles_, position_);
-}
-
-void Interpolator::stop_jog() noexcept VIAPOINT_NONBLOCKING {
-  if (jog_.active()) jog_.wish(JointVector::Zero(position_.size()), 0, position_);
-}
-
-bool Interpolator::may_be_jogged() const noexcept {
-  if (motion_ == nullptr) return run_state_ != RunState::kFault;
-  return wish_ == Wish::kPause &&
-         (run_state_ == RunState::kPaused || run_state_ == RunState::kJogging);
 }
 
 bool Interpolator::is_stop() const noexcept {
@@ -187,51 +132,6 @@ void Interpolator::hold(Setpoint& setpoint) const noexcept VIAPOINT_NONBLOCKING 
   setpoint.outputs = outputs_;
 }
 
-RunState Interpolator::tick_jog(Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKING {
-  if (motion_ == nullptr) {
-    shown_ = {0.0, 0.0, 0.0};
-    move_ = -1;
-  } else {
-    off_path_ = true;
-    if (wish_ != Wish::kPause) stop_jog();
-    switch_outputs(false);
-  }
-  jog_.tick(setpoint);
-  position_ = setpoint.q;
-  setpoint.outputs = outputs_;
-  run_state_ = motion_ == nullptr ? RunState::kIdle : RunState::kPaused;
-  if (jog_.active()) run_state_ = RunState::kJogging;
-  return run_state_;
-}
-
-RunState Interpolator::tick_return(Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKING {
-  const double share = wants_motion() ? override_ : 0.0;
-  if (!return_.active() && share > 0.0) {
-    const double tau = nominal(now_.tau);
-    return_.begin(position_, motion_->pieces()[piece_].at(motion_->time_in(piece_, tau)).q);
-  }
-  bool rests = true;
-  if (return_.active()) {
-    return_.tick(share, setpoint);
-    position_ = setpoint.q;
-    setpoint.outputs = outputs_;
-    rests = return_.rests() && share == 0.0;
-    off_path_ = !return_.arrived();
-    if (rests || !off_path_) return_.drop();
-  } else {
-    hold(setpoint);
-  }
-  if (is_stop()) {
-    run_state_ = rests ? RunState::kStopped : RunState::kStopping;
-    if (rests) motion_ = nullptr;
-  } else {
-    run_state_ = share > 0.0 ? RunState::kReturning
-                 : rests     ? RunState::kPaused
-                             : RunState::kPausing;
-  }
-  return run_state_;
-}
-
 RunState Interpolator::tick_motion(Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKING {
   turn_where_wanted();
   const bool untouched =
@@ -260,44 +160,6 @@ RunState Interpolator::tick_motion(Setpoint& setpoint) noexcept VIAPOINT_NONBLOC
   return run_state_;
 }
 
-/// At rest where the motion ends for now.
-RunState Interpolator::tick_waiting(Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKING {
-  shown_ = {motion_->duration(), 0.0, 0.0};
-  run_state_ = classify_wait();
-  switch_outputs(false);
-  hold(setpoint);
-  if (run_state_ == RunState::kStopped || run_state_ == RunState::kFinished) motion_ = nullptr;
-  return run_state_;
-}
-
-/// At rest where an input is waited for. When that is so, or was missed, the cycle is another's.
-RunState Interpolator::tick_at_gate(Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKING {
-  if (wants_motion()) {
-    const InputGate::Answer answer = gate_.ask(inputs_);
-    if (answer == InputGate::Answer::kGoOn) {
-      fresh_ = now_.tau;
-      return tick_motion(setpoint);
-    }
-    input_missed_ = answer == InputGate::Answer::kTimedOut;
-    run_state_ = input_missed_ ? RunState::kStopped : RunState::kWaiting;
-  } else {
-    run_state_ = is_stop() ? RunState::kStopped : RunState::kPaused;
-  }
-  switch_outputs(false);
-  evaluate(0.0, setpoint);
-  if (run_state_ == RunState::kStopped) motion_ = nullptr;
-  return run_state_;
-}
-
-/// The arm gets no farther than where it is to wait; the path rests there.
-void Interpolator::stop_at_gate() noexcept VIAPOINT_NONBLOCKING {
-  if (direction_ == Direction::kBackward || gate_.waits()) return;
-  const double place = gate_.place();
-  if (now_.tau < place - kEndSlack) return;
-  rest_at(place);
-  gate_.arrive();
-}
-
 void Interpolator::switch_outputs(bool is_ahead) noexcept VIAPOINT_NONBLOCKING {
   const TimedOutputs::Progress progress{farthest_, gate_.place(), is_ahead, now_};
   std::uint64_t timed = timed_outputs_.tick(progress, governor_);
@@ -320,6 +182,7 @@ void Interpolator::turn_where_wanted() noexcept VIAPOINT_NONBLOCKING {
   const double tau = nominal(now_.tau);
   direction_ = wanted;
   rest_at(nominal(tau));
+  piece_ = motion_->piece_at(nominal(now_.tau));  // there and back again may end a rounding away
   lookahead_.begin(*motion_, direction_);
 }
 
@@ -345,13 +208,6 @@ void Interpolator::describe(const Setpoint& setpoint,
 
 bool Interpolator::ends_here() const noexcept {
   return direction_ == Direction::kForward && now_.tau >= motion_->duration();
-}
-
-/// At rest at the end of a motion of which more may come.
-RunState Interpolator::classify_wait() const noexcept {
-  if (is_stop()) return RunState::kStopped;
-  if (!wants_motion()) return RunState::kPaused;
-  return open_ ? RunState::kWaiting : RunState::kFinished;
 }
 
 RunState Interpolator::classify() const noexcept {

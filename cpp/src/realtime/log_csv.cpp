@@ -39,35 +39,57 @@ void append_vector(std::string& text, const JointVector& values, Eigen::Index jo
   }
 }
 
-}  // namespace
+Eigen::Index joints_of(std::span<const LogRecord> records) {
+  return records.empty() ? 0 : records.front().q.size();
+}
 
-std::string log_to_csv(std::span<const LogRecord> records) {
-  const Eigen::Index joints = records.empty() ? 0 : records.front().q.size();
+std::string heading(Eigen::Index joints) {
   std::string text = "cycle,stamp_ns,latency_ns,compute_ns,nominal_time,rate,move,state,outputs";
   for (const char* name : {"q", "qd", "qdd", "qddd", "measured"}) append_names(text, name, joints);
   text += '\n';
-  for (const LogRecord& record : records) {
-    append(text, record.cycle);
-    append_field(text, record.stamp);
-    append_field(text, record.latency);
-    append_field(text, record.compute);
-    append_field(text, record.nominal_time);
-    append_field(text, record.rate);
-    append_field(text, record.move);
-    text += ',';
-    text += to_string(record.state);
-    append_field(text, record.outputs);
-    for (const JointVector* values :
-         {&record.q, &record.qd, &record.qdd, &record.qddd, &record.measured}) {
-      append_vector(text, *values, joints);
-    }
-    text += '\n';
+  return text;
+}
+
+void append_row(std::string& text, const LogRecord& record, Eigen::Index joints) {
+  append(text, record.cycle);
+  append_field(text, record.stamp);
+  append_field(text, record.latency);
+  append_field(text, record.compute);
+  append_field(text, record.nominal_time);
+  append_field(text, record.rate);
+  append_field(text, record.move);
+  text += ',';
+  text += to_string(record.state);
+  append_field(text, record.outputs);
+  for (const JointVector* values :
+       {&record.q, &record.qd, &record.qdd, &record.qddd, &record.measured}) {
+    append_vector(text, *values, joints);
   }
+  text += '\n';
+}
+
+}  // namespace
+
+std::string log_to_csv(std::span<const LogRecord> records) {
+  const Eigen::Index joints = joints_of(records);
+  std::string text = heading(joints);
+  for (const LogRecord& record : records) append_row(text, record, joints);
   return text;
 }
 
 void write_log_csv(const std::string& path, std::span<const LogRecord> records) {
-  write_file_atomically(path, log_to_csv(records));
+  constexpr size_t kPiece = size_t{1} << 18;  // hours are never text in memory as a whole
+  AtomicFile file(path);
+  const Eigen::Index joints = joints_of(records);
+  std::string text = heading(joints);
+  for (const LogRecord& record : records) {
+    append_row(text, record, joints);
+    if (text.size() < kPiece) continue;
+    file.write(text);
+    text.clear();
+  }
+  file.write(text);
+  file.commit();
 }
 
 }  // namespace viapoint

@@ -125,24 +125,59 @@ int Lookahead::advance(double tau, int cells, int pieces) noexcept VIAPOINT_NONB
   return pieces - left;
 }
 
+/// Over [from, to] of the cell's width. With t the range of q''' and q', q'' the values at the
+/// cell's beginning, q''(δ) is in q'' + t δ, and q'(δ) in q' + q'' δ + t δ²/2 (Taylor).
+[[gnu::always_inline]] inline Lookahead::PairStretch Lookahead::Cell::between(
+    std::size_t p, double from, double to) const noexcept {
+  PairRange x = ranges.first.pair[p], y = ranges.second.pair[p];
+  const PairRange& t = ranges.third.pair[p];
+  if (!is_smooth) return {x, y, t, x, y};
+  const double time = to - from, bend = 0.5 * from * from;
+  const PairRange y_there{y.low.max(second[p] + t.low * from),
+                          y.high.min(second[p] + t.high * from)};
+  y.low = y.low.max(y_there.low + (t.low * time).min(0.0));
+  y.high = y.high.min(y_there.high + (t.high * time).max(0.0));
+  const Eigen::Array2d straight = first[p] + second[p] * from;
+  const PairRange x_there{x.low.max(straight + t.low * bend), x.high.min(straight + t.high * bend)};
+  x.low = x.low.max(x_there.low + (y.low * time).min(0.0));
+  x.high = x.high.min(x_there.high + (y.high * time).max(0.0));
+  return {x, y, t, x_there, y_there};
+}
+
 bool Lookahead::ranges(double from, double to,
-                       DerivativeRanges& out) const noexcept VIAPOINT_NONBLOCKING {
+                       PathStretch& out) const noexcept VIAPOINT_NONBLOCKING {
   const std::int64_t begin = cell_of(from);
   const std::int64_t last = cell_of(to);
   if (begin < first_ || last >= end_) return false;
-  const DerivativeRanges& start = cells_[static_cast<std::size_t>(begin % kCells)];
+  const auto within = [this](std::int64_t cell, double tau) noexcept {
+    return std::clamp(tau + origin_ - static_cast<double>(cell) * width_, 0.0, width_);
+  };
+  DerivativeRanges& all = out.ranges;
+  const Cell& start = cells_[static_cast<std::size_t>(begin % kCells)];
   for (std::size_t p = 0; p < pairs_; ++p) {
-    out.first.pair[p] = start.first.pair[p];
-    out.second.pair[p] = start.second.pair[p];
-    out.third.pair[p] = start.third.pair[p];
+    const PairStretch pair =
+        start.between(p, within(begin, from), begin == last ? within(begin, to) : width_);
+    all.first.pair[p] = pair.first;
+    all.second.pair[p] = pair.second;
+    all.third.pair[p] = pair.third;
+    out.first_there.pair[p] = pair.first_there;
+    out.second_there.pair[p] = pair.second_there;
   }
-  for (std::int64_t c = begin + 1; c <= last; ++c) {
-    const DerivativeRanges& cell = cells_[static_cast<std::size_t>(c % kCells)];
+  for (std::int64_t c = begin + 1; c < last; ++c) {
+    const DerivativeRanges& whole = cells_[static_cast<std::size_t>(c % kCells)].ranges;
     for (std::size_t p = 0; p < pairs_; ++p) {
-      out.first.pair[p].include(cell.first.pair[p]);
-      out.second.pair[p].include(cell.second.pair[p]);
-      out.third.pair[p].include(cell.third.pair[p]);
+      all.first.pair[p].include(whole.first.pair[p]);
+      all.second.pair[p].include(whole.second.pair[p]);
+      all.third.pair[p].include(whole.third.pair[p]);
     }
+  }
+  if (last == begin) return true;
+  const Cell& end = cells_[static_cast<std::size_t>(last % kCells)];
+  for (std::size_t p = 0; p < pairs_; ++p) {
+    const PairStretch pair = end.between(p, 0.0, within(last, to));
+    all.first.pair[p].include(pair.first);
+    all.second.pair[p].include(pair.second);
+    all.third.pair[p].include(pair.third);
   }
   return true;
 }
@@ -160,9 +195,10 @@ double Lookahead::start_of(std::size_t piece) const noexcept VIAPOINT_NONBLOCKIN
 }
 
 void Lookahead::begin_cell() noexcept VIAPOINT_NONBLOCKING {
-  DerivativeRanges& cell = cells_[static_cast<std::size_t>(end_ % kCells)];
+  Cell& cell = cells_[static_cast<std::size_t>(end_ % kCells)];
   constexpr Range kNowhere{1e300, -1e300};
-  for (JointRanges* ranges : {&cell.first, &cell.second, &cell.third}) {
+  cell.is_smooth = false;
+  for (JointRanges* ranges : {&cell.ranges.first, &cell.ranges.second, &cell.ranges.third}) {
     for (int j = 0; j < joints_; ++j) ranges->set(j, kNowhere);
   }
   begun_ = true;
@@ -171,7 +207,7 @@ void Lookahead::begin_cell() noexcept VIAPOINT_NONBLOCKING {
 bool Lookahead::end_cell(int& pieces) noexcept VIAPOINT_NONBLOCKING {
   const double from = static_cast<double>(end_) * width_ - origin_;
   const double to = static_cast<double>(end_ + 1) * width_ - origin_;
-  DerivativeRanges& cell = cells_[static_cast<std::size_t>(end_ % kCells)];
+  Cell& cell = cells_[static_cast<std::size_t>(end_ % kCells)];
   const auto& all = trajectory_->pieces();
   for (; piece_ < all.size(); ++piece_) {
     if (pieces == 0) return false;
@@ -180,6 +216,7 @@ bool Lookahead::end_cell(int& pieces) noexcept VIAPOINT_NONBLOCKING {
     const TrajectoryPiece& piece = all[index_of(piece_)];
     const double begin = std::clamp(from - start, 0.0, piece.duration);
     const double end = std::clamp(to - start, 0.0, piece.duration);
+    cell.is_smooth = from >= start && to <= start + piece.duration;
     if (direction_ == Direction::kForward) {
       add_piece(piece, begin, end, cell);
     } else {
@@ -187,17 +224,18 @@ bool Lookahead::end_cell(int& pieces) noexcept VIAPOINT_NONBLOCKING {
     }
     if (start + piece.duration > to) break;
   }
-  if (piece_ == all.size()) add_rest(cell);
+  if (piece_ == all.size()) add_rest(cell.ranges);
   begun_ = false;
   ++end_;
   return true;
 }
 
 void Lookahead::add_piece(const TrajectoryPiece& piece, double from, double to,
-                          DerivativeRanges& cell) const noexcept VIAPOINT_NONBLOCKING {
+                          Cell& cell) const noexcept VIAPOINT_NONBLOCKING {
   const double half = 0.5 * (to - from);
   const std::array<JointState, 3> state = {piece.at(from), piece.at(from + half), piece.at(to)};
   const TimingBounds timing = timing_bounds(piece, from, to);
+  const bool forward = direction_ == Direction::kForward;
   for (int j = 0; j < joints_; ++j) {
     const auto i = static_cast<std::size_t>(j);
     const double snap = snap_bound(piece, timing, i);
@@ -207,11 +245,13 @@ void Lookahead::add_piece(const TrajectoryPiece& piece, double from, double to,
       const Range second =
           between(a.qdd[j], b.qdd[j], magnitude(third), half, limits_.acceleration[j]);
       const Range first = between(a.qd[j], b.qd[j], magnitude(second), half, limits_.velocity[j]);
-      const bool forward = direction_ == Direction::kForward;
-      cell.first.include(j, forward ? first : mirrored(first));
-      cell.second.include(j, second);
-      cell.third.include(j, forward ? third : mirrored(third));
+      cell.ranges.first.include(j, forward ? first : mirrored(first));
+      cell.ranges.second.include(j, second);
+      cell.ranges.third.include(j, forward ? third : mirrored(third));
     }
+    const JointState& start = forward ? state.front() : state.back();
+    cell.first[i / 2][j % 2] = forward ? start.qd[j] : -start.qd[j];
+    cell.second[i / 2][j % 2] = start.qdd[j];
   }
 }
 

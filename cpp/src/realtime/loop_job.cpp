@@ -105,9 +105,8 @@ void LoopJob::wish(Wish wish) {
 }
 
 void LoopJob::on_input(const InputReaction& reaction) {
-  constexpr std::array kWishes = {Wish::kPause, Wish::kRun, Wish::kStop};
-  const auto place = std::ranges::find(kWishes, reaction.wish);
-  if (place == kWishes.end()) {
+  const auto place = std::ranges::find(kReactions, reaction.wish);
+  if (place == kReactions.end()) {
     throw MotionError(ErrorCode::kBadArgument, "an input cannot make a run do that",
                       {"let it pause, resume or stop the run"});
   }
@@ -116,7 +115,7 @@ void LoopJob::on_input(const InputReaction& reaction) {
                       "there is no input " + std::to_string(reaction.input) + "; inputs are 0 to " +
                           std::to_string(kDigitalInputs - 1));
   }
-  motion_.reactions[static_cast<std::size_t>(place - kWishes.begin())].store(
+  motion_.reactions[static_cast<std::size_t>(place - kReactions.begin())].store(
       reaction, std::memory_order_release);
 }
 

@@ -11,16 +11,10 @@ namespace {
 constexpr double kSameRate = 1e-12;
 /// Largest change of the rate in a cycle, and cycles to get there, where the joints would allow
 /// more (at rest they allow anything).
-constexpr double kMaxRateStep = 0.5;
+constexpr double kMaxRateStep = 1.0;
 constexpr double kCyclesToMaxSlope = 1.0;
 /// Outside of [0, 1] by more than this, the end of a way back says nothing any more.
 constexpr double kFarOutside = 0.5;
-/// Pushes tried a cycle, and how much of one that has no way back is tried next.
-constexpr int kTrials = 3;
-constexpr double kShrink = 0.6;
-/// Least share of the strongest push that is tried.
-constexpr double kLeastShare = 1.0 / 64.0;
-
 Range hull(double a, double b) noexcept { return {std::min(a, b), std::max(a, b)}; }
 
 Range within_unit(const Range& rate) noexcept {
@@ -70,8 +64,7 @@ double RateGovernor::cell() const noexcept { return 0.5 * stride_ * cycle_; }
 void RateGovernor::reset() noexcept VIAPOINT_NONBLOCKING {
   plan_.steps = 0;
   plan_.position = 0;
-  gain_ = 0.0;
-  share_ = 1.0;
+  memory_ = {};
 }
 
 double RateGovernor::decide(const RateState& now, double target,
@@ -128,95 +121,88 @@ void RateGovernor::improve(const RateState& now, double target,
   double strongest = base + missing / (cycle_ * cycle_);
   if (!strongest_push(now, strongest, lookahead, strongest)) return;
 
-  // As strong as was possible last time; less, where as much as last time would go too far.
-  double push = base + share_ * (strongest - base);
-  const double gain = std::exchange(gain_, 0.0);
-  if (gain * missing > 0.0 && std::abs(gain) > std::abs(missing)) {
-    push = base + missing / gain * (strongest - base);
-  }
-  int budget = kStepsACycle;
-  for (int trial = 0; trial < kTrials && (push - base) * missing > 0.0; ++trial) {
-    const Outcome outcome = prove(now, push, lookahead, trial_, budget);
-    const double gained = trial_.end_rate - end;
-    const double over = (gained - missing) * (missing > 0.0 ? 1.0 : -1.0);
-    if (outcome == Outcome::kProven && over <= kSameRate) {
-      std::swap(plan_, trial_);
-      gain_ = gained;
-      share_ = std::min(1.0, 2.0 * share_);
-      return;
-    }
+  const double most = strongest - base;
+  if (most * missing <= 0.0) return;
+
+  const double toward = std::copysign(1.0, missing);
+  PushSearch search(memory_, toward * missing);
+  int left = kStretchesACycle;
+  while (left > 0 && search.goes_on()) {
+    const Outcome outcome = prove(now, base + search.share() * most, lookahead, left);
+    const double gain = toward * (trial_.end_rate - end);
     if (outcome == Outcome::kNone) {
-      push = base + kShrink * (push - base);
-      share_ = std::max(kLeastShare, kShrink * share_);
+      search.refuse();
+    } else if (outcome == Outcome::kTooFar || gain > toward * missing + kSameRate) {
+      search.go_too_far(gain);
     } else {
-      // The end is convex in the push, so the chord stays on the near side.
-      push = base + (push - base) * missing / gained;
+      std::swap(plan_, trial_);
+      search.accept(gain);
     }
   }
+  memory_ = search.memory();
 }
 
 bool RateGovernor::strongest_push(const RateState& now, double wanted, const Lookahead& lookahead,
-                                  double& push) const noexcept VIAPOINT_NONBLOCKING {
-  RateStretch stretch;
-  const double furthest = now.tau + cycle_ * (now.rate + cycle_ * max_slope_);
-  if (!lookahead.ranges(now.tau, furthest, stretch.path)) return false;
-  stretch.slope = {now.slope, now.slope};
+                                  double& push) noexcept VIAPOINT_NONBLOCKING {
+  // The push itself may raise the rate within the cycle.
+  const double raised = std::max(0.0, now.slope) + (wanted > 0.0 ? 0.5 * max_slope_ : 0.0);
+  const double furthest = now.tau + cycle_ * std::min(1.0, now.rate + cycle_ * raised);
+  if (!lookahead.ranges(now.tau, furthest, stretch_.path)) return false;
+  stretch_.begin(now.rate, now.slope, cycle_);
   const double low = std::max(-max_curvature_, (-max_slope_ - now.slope) / cycle_);
   const double high = std::min(max_curvature_, (max_slope_ - now.slope) / cycle_);
   push = 0.0;
-  // Again, because the push itself raises the rate within the cycle.
   for (int pass = 0; pass < 2; ++pass) {
-    stretch.rate = within_unit(hull(now.rate, now.after(cycle_, push).rate));
+    stretch_.rate = within_unit(hull(now.rate, now.after(cycle_, push).rate));
     push = std::clamp(wanted, low, high);
-    if (!limits_.strongest(stretch, cycle_, push)) return false;
+    if (!limits_.strongest(stretch_, push)) return false;
   }
   return true;
 }
 
 RateGovernor::Outcome RateGovernor::prove(RateState state, double push, const Lookahead& lookahead,
-                                          Plan& plan,
-                                          int& budget) const noexcept VIAPOINT_NONBLOCKING {
-  plan.steps = 0;
-  plan.position = 0;
+                                          int& left) noexcept VIAPOINT_NONBLOCKING {
+  trial_.steps = 0;
+  trial_.position = 0;
+  --left;
   RateState next = state.after(cycle_, push);
-  RateStretch stretch;
   const Range rates = rates_between(state, next, push);
   bool is_outside = leaves_unit(rates);
-  stretch.rate = within_unit(rates);
-  stretch.slope = hull(state.slope, next.slope);
-  stretch.curvature = push;
   next.tau = std::max(next.tau, state.tau);
-  if (!lookahead.ranges(state.tau, next.tau, stretch.path) || !limits_.kept(stretch)) {
+  stretch_.begin(state.rate, state.slope, cycle_);
+  stretch_.rate = within_unit(rates);
+  stretch_.slope = hull(state.slope, next.slope);
+  stretch_.curvature = push;
+  if (!lookahead.ranges(state.tau, next.tau, stretch_.path) || !limits_.kept(stretch_)) {
     return Outcome::kNone;
   }
   if (std::abs(next.slope) < kSameRate) next.slope = 0.0;
-  plan.step[static_cast<std::size_t>(plan.steps++)] = {push, 1};
+  trial_.step[static_cast<std::size_t>(trial_.steps++)] = {push, 1};
   state = next;
   while (state.slope != 0.0) {
-    if (plan.steps > kSteps || --budget < 0 || !step_back(state, lookahead, plan)) {
+    if (trial_.steps > kSteps || --left < 0 || !step_back(state, lookahead)) {
       return Outcome::kNone;
     }
     if (leaves_unit({state.rate, state.rate})) is_outside = true;
     if (leaves_unit({state.rate + kFarOutside, state.rate - kFarOutside})) return Outcome::kNone;
   }
-  plan.end_rate = is_outside ? state.rate : std::clamp(state.rate, 0.0, 1.0);
+  trial_.end_rate = is_outside ? state.rate : std::clamp(state.rate, 0.0, 1.0);
   return is_outside ? Outcome::kTooFar : Outcome::kProven;
 }
 
-bool RateGovernor::step_back(RateState& state, const Lookahead& lookahead,
-                             Plan& plan) const noexcept VIAPOINT_NONBLOCKING {
+bool RateGovernor::step_back(RateState& state,
+                             const Lookahead& lookahead) noexcept VIAPOINT_NONBLOCKING {
   // Until slope 0 and never past it, so that the rate stays between those here.
-  int cycles = longest_step(plan.steps - 1);
+  int cycles = longest_step(trial_.steps - 1);
   const double time = cycles * cycle_;
-  const double furthest = state.tau + time * (std::clamp(state.rate, 0.0, 1.0) +
-                                              0.5 * time * std::max(0.0, state.slope));
-  RateStretch stretch;
-  if (!lookahead.ranges(state.tau, furthest, stretch.path)) return false;
-  stretch.rate = within_unit(hull(state.rate, state.rate + time * state.slope));
-  stretch.slope = {state.slope, state.slope};
+  const double rate = std::clamp(state.rate, 0.0, 1.0);
+  const double furthest = state.tau + time * (rate + 0.5 * time * std::max(0.0, state.slope));
+  if (!lookahead.ranges(state.tau, furthest, stretch_.path)) return false;
+  stretch_.begin(rate, state.slope, time);
+  stretch_.rate = within_unit(hull(state.rate, state.rate + time * state.slope));
   const double undone = -state.slope / cycle_;
   double gamma = std::clamp(undone, -max_curvature_, max_curvature_);
-  if (!limits_.strongest(stretch, time, gamma)) return false;
+  if (!limits_.strongest(stretch_, gamma)) return false;
   const double found = gamma;
   if (gamma * undone > 0.0 && std::abs(undone) <= cycles * std::abs(gamma)) {
     cycles = static_cast<int>(std::ceil(undone / gamma));
@@ -229,12 +215,13 @@ bool RateGovernor::step_back(RateState& state, const Lookahead& lookahead,
   if (is_away && (next.tau > furthest || std::abs(next.slope) > max_slope_)) return false;
   // Where a joint forces a curvature, less than what was found may be too little.
   if (is_away || gamma != found) {
-    stretch.rate = within_unit(rates_between(state, next, gamma));
-    stretch.slope = hull(state.slope, next.slope);
-    stretch.curvature = gamma;
-    if (!limits_.kept(stretch)) return false;
+    stretch_.time = cycles * cycle_;
+    stretch_.rate = within_unit(rates_between(state, next, gamma));
+    stretch_.slope = hull(state.slope, next.slope);
+    stretch_.curvature = gamma;
+    if (!limits_.kept(stretch_)) return false;
   }
-  plan.step[static_cast<std::size_t>(plan.steps++)] = {gamma, cycles};
+  trial_.step[static_cast<std::size_t>(trial_.steps++)] = {gamma, cycles};
   state = next;
   return true;
 }

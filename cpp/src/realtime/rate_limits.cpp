@@ -72,20 +72,50 @@ struct Room {
   return !(room.below >= 0.0 && room.above >= 0.0).all();
 }
 
-/// What the joints have taken of their limits at the start of a push, and what a push adds.
+/// q̈ where the stretch begins.
+[[gnu::always_inline]] inline PairRange first_acceleration(const RateStretch& stretch,
+                                                           std::size_t p) noexcept {
+  return sum(product(stretch.path.second_there.pair[p], stretch.first_rate * stretch.first_rate),
+             product(stretch.path.first_there.pair[p], stretch.first_slope));
+}
+
+/// What the joints have taken of their limits before a push, and what the push uses up.
 struct Demand {
-  PairRange mixed;  ///< 3 q''ρ
-  PairRange acceleration, jerk;
+  Room start;                  ///< what q̈ leaves where the stretch begins
+  Room acceleration, jerk;     ///< what is left for γt q' at its end, and for γ times the next two
+  Room drift;                  ///< what is left of the jerk, for q̈ to stay within its limits
+  PairRange at_start, at_end;  ///< q' and q' + 3q''ρt
 };
 
-[[gnu::always_inline]] inline Demand demand_of(const PairRange& first, const PairRange& second,
-                                               const PairRange& third, const Range& rate,
-                                               double slope) noexcept {
+[[gnu::always_inline]] inline Demand demand_of(const RateStretch& stretch, std::size_t p,
+                                               const Array2d& most_acceleration,
+                                               const Array2d& most_jerk) noexcept {
+  const PairRange& first = stretch.path.ranges.first.pair[p];
+  const PairRange& second = stretch.path.ranges.second.pair[p];
+  const PairRange& third = stretch.path.ranges.third.pair[p];
+  const Range& rate = stretch.rate;
   const Range square{rate.low * rate.low, rate.high * rate.high};
   const Range cube{square.low * rate.low, square.high * rate.high};
   const PairRange mixed = scaled(second, {3.0 * rate.low, 3.0 * rate.high});
-  return {mixed, sum(scaled(second, square), product(first, slope)),
-          sum(scaled(third, cube), product(mixed, slope))};
+  const PairRange jerk = sum(scaled(third, cube), product(mixed, stretch.first_slope));
+  const double per_time = 1.0 / stretch.time;
+  Demand demand;
+  demand.start = room_beside(first_acceleration(stretch, p), most_acceleration);
+  demand.start.above += doubt_of(first, second, third);
+  demand.acceleration = room_beside(
+      sum(scaled(second, square), product(first, stretch.first_slope)), most_acceleration);
+  demand.jerk = room_beside(jerk, most_jerk);
+  demand.drift = {demand.start.below * per_time + jerk.low,
+                  demand.start.above * per_time - jerk.high};
+  demand.at_start = first;
+  demand.at_end = sum(first, scaled(mixed, {stretch.time, stretch.time}));
+  return demand;
+}
+
+/// The largest γ of a sign that fits into the room, where it takes up so much a unit.
+[[gnu::always_inline]] inline Array2d most_in(const Room& room, const Array2d& toward,
+                                              const Array2d& away) noexcept {
+  return (room.above / toward).min(room.below / away);
 }
 
 /// The γ that are left where 0 is not among them.
@@ -143,13 +173,18 @@ bool RateLimits::kept(const RateStretch& stretch) const noexcept VIAPOINT_NONBLO
   const double doubt = doubt_of(rate) + doubt_of(stretch.slope) + 0.0 * stretch.curvature;
   Array2d is_kept = Array2d::Constant(1.0 + doubt);
   for (std::size_t p = 0; p < pairs_; ++p) {
-    const PairRange& first = stretch.path.first.pair[p];
-    const PairRange& second = stretch.path.second.pair[p];
-    const PairRange& third = stretch.path.third.pair[p];
+    const PairRange& first = stretch.path.ranges.first.pair[p];
+    const PairRange& second = stretch.path.ranges.second.pair[p];
+    const PairRange& third = stretch.path.ranges.third.pair[p];
     const PairRange acceleration = sum(scaled(second, square), product(first, stretch.slope));
     const PairRange jerk =
         sum(scaled(third, cube), sum(product(second, mixed), product(first, stretch.curvature)));
-    is_kept *= is_within(acceleration, limits_[p].acceleration) * is_within(jerk, limits_[p].jerk);
+    const PairRange start = first_acceleration(stretch, p);
+    const PairRange reached{start.low + stretch.time * jerk.low.min(0.0),
+                            start.high + stretch.time * jerk.high.max(0.0)};
+    const Array2d& most = limits_[p].acceleration;
+    is_kept *= is_within(acceleration, most).max(is_within(reached, most)) *
+               is_within(jerk, limits_[p].jerk);
     is_kept += doubt_of(first, second, third);
   }
   return is_kept[0] == 1.0 && is_kept[1] == 1.0;
@@ -158,57 +193,54 @@ bool RateLimits::kept(const RateStretch& stretch) const noexcept VIAPOINT_NONBLO
 // q̈ = q''ρ² + q'(α + γt) and q⃛ = q'''ρ³ + 3q''ρ(α + γt) + q'γ are linear in γ, and in t: their
 // worst is at the start or the end.
 
-bool RateLimits::strongest(const RateStretch& stretch, double time,
+bool RateLimits::strongest(const RateStretch& stretch,
                            double& curvature) const noexcept VIAPOINT_NONBLOCKING {
-  const double slope = stretch.slope.low;
   const bool is_positive = curvature >= 0.0;
-  if (std::isnan(doubt_of(stretch.rate) + 0.0 * slope + 0.0 * curvature)) return false;
+  if (std::isnan(doubt_of(stretch.rate) + 0.0 * stretch.first_slope + 0.0 * curvature)) {
+    return false;
+  }
+  const Array2d nothing = Array2d::Constant(kNothing);
   Array2d most = Array2d::Constant(std::abs(curvature));
   for (std::size_t p = 0; p < pairs_; ++p) {
-    const PairRange& first = stretch.path.first.pair[p];
-    const PairRange& second = stretch.path.second.pair[p];
-    const PairRange& third = stretch.path.third.pair[p];
-    const Demand demand = demand_of(first, second, third, stretch.rate, slope);
-    Room acceleration = room_beside(demand.acceleration, limits_[p].acceleration);
-    acceleration.above += doubt_of(first, second, third);
-    if (is_none(acceleration)) return false;  // at the start, where no γ helps
-    const Room jerk = room_beside(demand.jerk, limits_[p].jerk);
-    if (is_none(jerk)) return forced(stretch, time, curvature);
-    // In the direction wished: what is left, over how fast γ uses it up.
-    const PairRange at_end = sum(first, scaled(demand.mixed, {time, time}));
-    const Array2d up = first.high.max(kNothing), down = (-first.low).max(kNothing);
-    const Array2d jerk_up = up.max(at_end.high), jerk_down = down.max(-at_end.low);
-    if (is_positive) {
-      most = most.min((acceleration.above / up).min(acceleration.below / down) / time);
-      most = most.min((jerk.above / jerk_up).min(jerk.below / jerk_down));
-    } else {
-      most = most.min((acceleration.above / down).min(acceleration.below / up) / time);
-      most = most.min((jerk.above / jerk_down).min(jerk.below / jerk_up));
-    }
+    const Demand demand = demand_of(stretch, p, limits_[p].acceleration, limits_[p].jerk);
+    if (is_none(demand.start)) return false;  // where no γ helps
+    // How fast γ uses up what is left in its direction, and in the other.
+    const Array2d up = demand.at_start.high.max(nothing);
+    const Array2d down = (-demand.at_start.low).max(nothing);
+    const Array2d up_all = up.max(demand.at_end.high), down_all = down.max(-demand.at_end.low);
+    const Array2d &toward = is_positive ? up : down, &away = is_positive ? down : up;
+    const Array2d& toward_all = is_positive ? up_all : down_all;
+    const Array2d& away_all = is_positive ? down_all : up_all;
+    const Array2d by_end = most_in(demand.acceleration, toward, away) / stretch.time;
+    const Array2d by_drift = most_in(demand.drift, toward_all, away_all);
+    const Array2d by_jerk = most_in(demand.jerk, toward_all, away_all);
+    most = most.min(by_jerk).min(by_end.max(by_drift));
+    if (!(most >= 0.0).all()) return forced(stretch, curvature);
   }
   curvature = is_positive ? most.minCoeff() : -most.minCoeff();
   return true;
 }
 
 /// The same where a joint has to be pushed.
-bool RateLimits::forced(const RateStretch& stretch, double time,
+bool RateLimits::forced(const RateStretch& stretch,
                         double& curvature) const noexcept VIAPOINT_NONBLOCKING {
   ForcedRange range;
+  const double time = stretch.time;
   for (std::size_t p = 0; p < pairs_; ++p) {
-    const PairRange& first = stretch.path.first.pair[p];
-    const PairRange& second = stretch.path.second.pair[p];
-    const PairRange& third = stretch.path.third.pair[p];
-    const Demand demand = demand_of(first, second, third, stretch.rate, stretch.slope.low);
-    Room acceleration = room_beside(demand.acceleration, limits_[p].acceleration);
-    acceleration.above += doubt_of(first, second, third);
-    if (is_none(acceleration)) return false;
-    const Room jerk = room_beside(demand.jerk, limits_[p].jerk);
-    const PairRange at_end = sum(first, scaled(demand.mixed, {time, time}));
+    const Demand demand = demand_of(stretch, p, limits_[p].acceleration, limits_[p].jerk);
+    if (is_none(demand.start)) return false;
+    const PairRange &first = demand.at_start, &last = demand.at_end;
     for (int lane = 0; lane < 2; ++lane) {
-      range.narrow(time * first.low[lane], time * first.high[lane], acceleration.below[lane],
-                   acceleration.above[lane]);
-      range.narrow(first.low[lane], first.high[lane], jerk.below[lane], jerk.above[lane]);
-      range.narrow(at_end.low[lane], at_end.high[lane], jerk.below[lane], jerk.above[lane]);
+      double below = demand.jerk.below[lane], above = demand.jerk.above[lane];
+      if (demand.acceleration.below[lane] >= 0.0 && demand.acceleration.above[lane] >= 0.0) {
+        range.narrow(time * first.low[lane], time * first.high[lane],
+                     demand.acceleration.below[lane], demand.acceleration.above[lane]);
+      } else {
+        below = std::min(below, demand.drift.below[lane]);
+        above = std::min(above, demand.drift.above[lane]);
+      }
+      range.narrow(first.low[lane], first.high[lane], below, above);
+      range.narrow(last.low[lane], last.high[lane], below, above);
     }
   }
   return range.take(curvature);

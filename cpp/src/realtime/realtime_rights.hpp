@@ -18,8 +18,20 @@ using MemoryLock = std::shared_ptr<void>;
 /// Runs `thread` under SCHED_FIFO at `priority`, or says in one line what stands against it.
 void raise_priority(std::thread& thread, int priority, std::vector<std::string>& shortcomings);
 
-/// For a thread's own use at its start: signals go to other threads, and sleeps end on time even
-/// without real-time priority.
+/// Keeps `thread` on one processor, counted from 0, or says in one line what stands against it.
+void keep_on(std::thread& thread, int processor, std::vector<std::string>& shortcomings);
+
+/// Keeps the machine's processors out of sleeps that they wake from late while any copy lives; null
+/// where that is not granted.
+using WakefulProcessors = std::shared_ptr<void>;
+
+/// Asks for it (Linux, pm_qos_interface: /dev/cpu_dma_latency at 0 µs while it is open), or says in
+/// one line of `shortcomings` what stands against it.
+[[nodiscard]] WakefulProcessors keep_processors_awake(std::vector<std::string>& shortcomings);
+
+/// For a thread's own use at its start: signals go to other threads, sleeps end on time even
+/// without real-time priority, and the stack that a cycle needs is there even where memory cannot
+/// be locked.
 void prepare_loop_thread();
 void block_signals();
 

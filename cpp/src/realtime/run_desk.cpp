@@ -6,6 +6,7 @@
 #include <thread>
 #include <utility>
 
+#include "realtime/require_cycle.hpp"
 #include "viapoint/core/error.hpp"
 #include "viapoint/core/number_text.hpp"
 
@@ -24,11 +25,7 @@ std::unique_ptr<Drive> checked(std::unique_ptr<Drive> drive, const JointLimits& 
                                                    " joints, the limits are for " +
                                                    std::to_string(limits.joints()));
   }
-  if (options.cycle.count() <= 0) {
-    throw MotionError(
-        ErrorCode::kBadArgument,
-        "the cycle is " + std::to_string(options.cycle.count()) + " ns; it must be positive");
-  }
+  require_cycle(options.cycle);
   if (options.log_records == 0) {
     throw MotionError(ErrorCode::kBadArgument,
                       "the log is to keep 0 records; at least 1 is needed");
@@ -61,7 +58,7 @@ std::shared_ptr<LoopJob> RunDesk::run(std::shared_ptr<const Trajectory> trajecto
                                       const std::function<void()>& last_word) {
   const std::lock_guard lock(admission_);
   if (trajectory == nullptr) throw MotionError(ErrorCode::kBadArgument, "there is no motion");
-  require_no_fault();
+  require_power();
   await_log_of_ended_run();
   if (busy()) {
     throw MotionError(ErrorCode::kBusy, "a run is already under way",
@@ -88,7 +85,7 @@ std::shared_ptr<LoopJob> RunDesk::run(std::shared_ptr<const Trajectory> trajecto
 void RunDesk::jog(const JointVector& velocity) {
   admit_jog(velocity, limits_);
   const std::lock_guard lock(admission_);
-  require_no_fault();
+  require_power();
   await_log_of_ended_run();
   if (busy() && !job_->may_be_jogged()) {
     throw MotionError(ErrorCode::kBusy,
@@ -127,7 +124,7 @@ void RunDesk::require_no_hand() const {
                     {"let go of it, and wait until it is not guided any more"});
 }
 
-void RunDesk::require_no_fault() {
+void RunDesk::require_power() {
   if (channels_.released.load(std::memory_order_acquire)) {
     throw MotionError(ErrorCode::kDriveFault, "the drive was released by a stop of category 1",
                       {"connect again"});
@@ -156,6 +153,11 @@ std::string RunDesk::fault() {
   }
   for (const double q : channels_.snapshot.read().measurement.q) text << ' ' << number_text(q);
   return text.str();
+}
+
+std::vector<LogRecord> RunDesk::fault_cycles() const {
+  if (!channels_.faulted.load(std::memory_order_acquire)) return {};
+  return channels_.history.records();
 }
 
 std::shared_ptr<LoopJob> RunDesk::job() const {

@@ -39,6 +39,10 @@ class RunDesk {
   void set_override(double share);
   /// What has failed; empty while nothing has.
   [[nodiscard]] std::string fault();
+  /// As ControllerLoop::require_power.
+  void require_power();
+  /// As ControllerLoop::fault_cycles.
+  [[nodiscard]] std::vector<LogRecord> fault_cycles() const;
   /// The last run; null before the first.
   [[nodiscard]] std::shared_ptr<LoopJob> job() const;
 
@@ -54,7 +58,6 @@ class RunDesk {
   [[nodiscard]] std::mutex& admission() { return admission_; }
 
  private:
-  void require_no_fault();
   void require_no_hand() const;
   [[nodiscard]] bool busy() const;
   void await_log_of_ended_run() const;

@@ -3,6 +3,7 @@
 #include <sstream>
 #include <string>
 
+#include "realtime/require_cycle.hpp"
 #include "viapoint/core/error.hpp"
 #include "viapoint/core/number_text.hpp"
 #include "viapoint/realtime/controller_loop.hpp"
@@ -27,12 +28,6 @@ constexpr std::uint64_t kMostCycles = 2'000'000;
 [[noreturn]] void refuse(double cycles) {
   refuse(cycles, {"give a larger override", "resume a pause earlier", "give a longer cycle",
                   "simulate the program in parts"});
-}
-
-void require_positive(std::chrono::nanoseconds cycle) {
-  if (cycle.count() > 0) return;
-  throw MotionError(ErrorCode::kBadArgument,
-                    "the cycle is " + std::to_string(cycle.count()) + " ns; it must be positive");
 }
 
 void check_time(const char* what, double time) {
@@ -100,7 +95,7 @@ void apply(const TimedCommand& command, Interpolator& interpolator, std::uint64_
 std::vector<LogRecord> simulate(const Trajectory& trajectory, const JointLimits& limits,
                                 std::vector<TimedCommand> commands,
                                 std::chrono::nanoseconds cycle) {
-  require_positive(cycle);
+  require_cycle(cycle);
   if (trajectory.pieces().empty()) {
     throw MotionError(ErrorCode::kEmptyProgram, "the motion is empty: there is nothing to run");
   }
@@ -183,7 +178,7 @@ void admit_jog(const JointVector& velocity, const JointLimits& limits) {
 
 std::vector<LogRecord> simulate_jog(const JointLimits& limits, const JointVector& start,
                                     std::vector<TimedJog> calls, std::chrono::nanoseconds cycle) {
-  require_positive(cycle);
+  require_cycle(cycle);
   if (start.size() != limits.joints() || !start.allFinite()) {
     throw MotionError(ErrorCode::kBadArgument,
                       "a jog starts at " + std::to_string(limits.joints()) + " finite joints");

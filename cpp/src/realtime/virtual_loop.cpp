@@ -47,8 +47,14 @@ void VirtualLoop::set_override(double share) { desk_->set_override(share); }
 double VirtualLoop::override_share() const {
   return desk_->channels().override_share.load(std::memory_order_relaxed);
 }
+void VirtualLoop::switch_outputs(std::uint64_t mask, std::uint64_t values) {
+  desk_->channels().switches.set(mask, values);
+}
 Measurement VirtualLoop::measured() const { return desk_->channels().snapshot.read().measurement; }
 LoopCycle VirtualLoop::newest_cycle() const { return desk_->channels().snapshot.read(); }
+std::vector<ObservedCycle> VirtualLoop::observed(std::uint64_t from, std::size_t most) const {
+  return desk_->channels().tape.read(from, most);
+}
 bool VirtualLoop::guided() const { return desk_->is_guided(); }
 bool VirtualLoop::busy() const {
   const auto job = desk_->job();
@@ -56,5 +62,7 @@ bool VirtualLoop::busy() const {
 }
 JointVector VirtualLoop::position() const { return desk_->channels().snapshot.read().q; }
 std::string VirtualLoop::fault() const { return desk_->fault(); }
+void VirtualLoop::require_power() const { desk_->require_power(); }
+std::vector<LogRecord> VirtualLoop::fault_cycles() const { return desk_->fault_cycles(); }
 
 }  // namespace viapoint

@@ -1,14 +1,14 @@
 #include "viapoint/remote/arm_host.hpp"
 
-#include <algorithm>
 #include <condition_variable>
-#include <deque>
-#include <iterator>
 #include <mutex>
 #include <thread>
 #include <utility>
 
+#include "remote/loop_look.hpp"
+#include "remote/motion_inbox.hpp"
 #include "remote/open_run.hpp"
+#include "remote/run_book.hpp"
 #include "viapoint/core/error.hpp"
 #include "viapoint/remote/control_seat.hpp"
 #include "viapoint/trajectory/trajectory.hpp"
@@ -27,43 +27,15 @@ std::chrono::nanoseconds share_of(double share, std::chrono::nanoseconds heartbe
   return std::chrono::duration_cast<std::chrono::nanoseconds>(share * heartbeat);
 }
 
-struct Run {
-  std::uint64_t number = 0;
-  std::shared_ptr<Job> job;
-  std::shared_ptr<OpenRun> open;  ///< null for one that is whole
-};
-
-bool has_ended(const Job& job) {
-  const RunState state = job.state();
-  return state == RunState::kFinished || state == RunState::kStopped || state == RunState::kFault;
-}
-
-/// What the loop alone knows.
-HostStatus look_at(const ControllerLoop& loop) {
-  HostStatus status;
-  status.setpoint = loop.position();
-  const LoopCycle now = loop.newest_cycle();
-  status.measured = now.measurement.q;
-  status.stamp = now.stamp;
-  status.inputs = now.measurement.inputs;
-  status.outputs = now.outputs;
-  status.override_share = loop.override_share();
-  status.busy = loop.busy();
-  status.jogging = loop.jogging();
-  status.jog_block = loop.jog_block();
-  status.fault = loop.fault();
-  status.shortcomings = loop.shortcomings();
-  return status;
-}
-
 }  // namespace
 
 struct ArmHost::Impl {
   Impl(const JointLimits& joint_limits, MakeLoop maker, std::chrono::nanoseconds heartbeat,
-       OnRun on_run)
+       OnRun on_run, OnLoss on_loss)
       : limits(joint_limits),
         make_loop(std::move(maker)),
         tell_run(std::move(on_run)),
+        tell_loss(std::move(on_loss)),
         lease(share_of(kLoopShare, heartbeat)),
         loop(make_loop({})),
         seat(share_of(kSeatShare, heartbeat)),
@@ -97,9 +69,10 @@ struct ArmHost::Impl {
   /// Nobody commands the arm any more: it comes to rest on its path, and waits. @pre locked
   void abandon(std::unique_lock<std::mutex>& lock) {
     pending.clear();
-    if (!runs.empty()) runs.back().job->pause();
+    if (tell_loss) tell_loss();
+    if (const KeptRun* const newest = runs.newest()) newest->job->pause();
     const std::shared_ptr<ControllerLoop> present = loop;
-    const std::shared_ptr<OpenRun> open = runs.empty() ? nullptr : runs.back().open;
+    const std::shared_ptr<OpenRun> open = runs.newest() ? runs.newest()->open : nullptr;
     if (present != nullptr) present->keep_alive(std::chrono::nanoseconds::zero());
     lock.unlock();
     if (present != nullptr) end_jog(*present);
@@ -117,23 +90,12 @@ struct ArmHost::Impl {
     }
   }
 
-  /// @pre locked
-  [[nodiscard]] const Run& find(std::uint64_t number) const {
-    for (const Run& run : runs) {
-      if (run.number == number) return run;
-    }
-    throw MotionError(ErrorCode::kBadArgument, "run " + std::to_string(number) +
-                                                   " is not known; the last one is " +
-                                                   std::to_string(last_run) + ", and the newest " +
-                                                   std::to_string(kRunsKept) + " are kept");
-  }
-
   /// @pre not locked
   [[nodiscard]] std::shared_ptr<OpenRun> open_run(const std::string& token,
                                                   std::uint64_t number) const {
     const std::lock_guard lock(mutex);
     seat.require(token);
-    if (std::shared_ptr<OpenRun> open = find(number).open) return open;
+    if (std::shared_ptr<OpenRun> open = runs.find(number).open) return open;
     throw MotionError(ErrorCode::kBadArgument,
                       "run " + std::to_string(number) + " is of a motion that was whole",
                       {"begin a stream"});
@@ -142,7 +104,7 @@ struct ArmHost::Impl {
   /// The motion collected, which nobody runs but the caller. @pre not locked
   [[nodiscard]] std::shared_ptr<const Trajectory> take_pending() {
     std::unique_lock lock(mutex);
-    std::vector<TrajectoryPiece> pieces = std::exchange(pending, {});
+    std::vector<TrajectoryPiece> pieces = pending.take();
     lock.unlock();
     return std::make_shared<const Trajectory>(std::move(pieces), limits);
   }
@@ -154,38 +116,40 @@ struct ArmHost::Impl {
     std::unique_lock lock(mutex);
     const std::shared_ptr<ControllerLoop> present = working_loop(token);
     lock.unlock();
-    Run run = start(*present, take_pending(), [&] {
+    KeptRun run = start(*present, take_pending(), [&] {
       // Control may have been lost meanwhile, and be another's: then nothing begins.
       lock.lock();
       static_cast<void>(working_loop(token));
     });
-    run.number = ++last_run;
-    if (tell_run) tell_run(run.number, run.job);
-    runs.push_back(std::move(run));
-    if (runs.size() > kRunsKept) runs.pop_front();
-    return last_run;
+    if (tell_run) tell_run(runs.last() + 1, run.job);
+    return runs.add(std::move(run));
   }
 
   /// A loop that has failed, or whose drive was released, makes room for a new one.
   /// @pre locked, and no other renewal under way
   void renew_loop(std::unique_lock<std::mutex>& lock) {
-    const bool was_released = is_release_wished && (runs.empty() || has_ended(*runs.back().job));
+    const bool was_released = is_release_wished && !runs.is_any_under_way();
     if (loop != nullptr && loop->fault().empty() && !was_released) return;
     if (loop != nullptr) {
       last = look_at(*loop);
       last_cycle = loop->newest_cycle();
+      auto cycles = loop->fault_cycles();
+      if (!cycles.empty()) fault_cycles = std::move(cycles);
     }
-    std::shared_ptr<ControllerLoop> spent = std::exchange(loop, nullptr);
+    std::shared_ptr<ControllerLoop> spent = std::exchange(loop, nullptr), made;
+    const JointVector rest = last.measured;
     lock.unlock();
-    spent.reset();  // its drive has to be free for the next; it ends under locks of its own
-    lock.lock();
-    if (quits) throw NotInControl("the controller is shutting down");
+    spent.reset();  // its drive has to be free for the next
     try {
-      loop = make_loop(last.measured);
+      made = make_loop(rest);
     } catch (const MotionError& error) {
+      lock.lock();
       last.fault = error.problem().message;
       throw;
     }
+    lock.lock();
+    if (quits) throw NotInControl("the controller is shutting down");
+    loop = std::move(made);
     is_release_wished = false;
   }
 
@@ -200,18 +164,19 @@ struct ArmHost::Impl {
   const JointLimits limits;
   const MakeLoop make_loop;
   const OnRun tell_run;
+  const OnLoss tell_loss;
   const std::chrono::nanoseconds lease;
 
-  std::mutex renewal;        ///< taken before the next one: one renewal of the loop at a time
+  std::mutex renewal;        ///< taken before the next one, while control is being taken
   mutable std::mutex mutex;  ///< guards what follows; never held while a motion is proven
   std::condition_variable changed;
   std::shared_ptr<ControllerLoop> loop;  ///< null only where the drive could not be enabled anew
   HostStatus last;                       ///< of the loop before
   LoopCycle last_cycle;                  ///< of the same
+  std::vector<LogRecord> fault_cycles;   ///< of the newest loop that failed before
   ControlSeat seat;
-  std::vector<TrajectoryPiece> pending;
-  std::deque<Run> runs;
-  std::uint64_t last_run = 0;
+  MotionInbox pending;
+  RunBook runs{kRunsKept};
   bool is_release_wished = false;
   bool quits = false;
 
@@ -219,13 +184,18 @@ struct ArmHost::Impl {
 };
 
 ArmHost::ArmHost(const JointLimits& limits, MakeLoop make_loop, std::chrono::nanoseconds heartbeat,
-                 OnRun on_run)
-    : impl_(std::make_unique<Impl>(limits, std::move(make_loop), heartbeat, std::move(on_run))) {}
+                 OnRun on_run, OnLoss on_loss)
+    : impl_(std::make_unique<Impl>(limits, std::move(make_loop), heartbeat, std::move(on_run),
+                                   std::move(on_loss))) {}
 
 ArmHost::~ArmHost() { shut_down(); }
 
 std::string ArmHost::take_control(const std::string& name) {
-  const std::lock_guard renewal(impl_->renewal);
+  // A drive takes a while to enable: who comes meanwhile is not kept waiting.
+  const std::unique_lock renewal(impl_->renewal, std::try_to_lock);
+  if (!renewal.owns_lock()) {
+    throw NotInControl("another connection is taking control of the arm", {"try again later"});
+  }
   std::unique_lock lock(impl_->mutex);
   if (impl_->quits) throw NotInControl("the controller is shutting down");
   if (!impl_->seat.taken()) impl_->renew_loop(lock);
@@ -255,34 +225,19 @@ void ArmHost::add_pieces(const std::string& token, std::size_t offset,
                          std::vector<TrajectoryPiece> pieces) {
   const std::lock_guard lock(impl_->mutex);
   impl_->seat.require(token);
-  if (offset == 0) impl_->pending.clear();
-  if (offset != impl_->pending.size()) {
-    throw MotionError(ErrorCode::kBadArgument,
-                      "the pieces from " + std::to_string(offset) + " on came where " +
-                          std::to_string(impl_->pending.size()) +
-                          " were there: a part is missing, came twice, or is another motion's",
-                      {"send the motion again, from its first piece on"});
-  }
-  const std::size_t count = impl_->pending.size() + pieces.size();
-  if (count > kMaxPieces) {
-    throw MotionError(ErrorCode::kBadArgument,
-                      "the motion has " + std::to_string(count) + " pieces or more; allowed are " +
-                          std::to_string(kMaxPieces),
-                      {"run it as several programs, one after the other"});
-  }
-  std::move(pieces.begin(), pieces.end(), std::back_inserter(impl_->pending));
+  impl_->pending.add(offset, std::move(pieces));
 }
 
 std::uint64_t ArmHost::run(const std::string& token) {
   return impl_->begin(token, [](ControllerLoop& loop, auto motion, const auto& last_word) {
-    return Run{0, loop.run(std::move(motion), last_word), nullptr};
+    return KeptRun{loop.run(std::move(motion), last_word), nullptr};
   });
 }
 
 std::uint64_t ArmHost::follow(const std::string& token) {
   return impl_->begin(token, [](ControllerLoop& loop, auto motion, const auto& last_word) {
     const std::shared_ptr<OpenJob> job = loop.follow(std::move(motion), last_word);
-    return Run{0, job, std::make_shared<OpenRun>(job)};
+    return KeptRun{job, std::make_shared<OpenRun>(job)};
   });
 }
 
@@ -303,7 +258,7 @@ void ArmHost::steer(const std::string& token, std::uint64_t run, Steering steeri
   // The lock is held until the wish is told: it cannot overtake a loss of control.
   const std::lock_guard lock(impl_->mutex);
   impl_->seat.require(token);
-  Job& job = *impl_->find(run).job;
+  Job& job = *impl_->runs.find(run).job;
   switch (steering) {
     case Steering::kPause:
       return job.pause();
@@ -324,12 +279,17 @@ void ArmHost::steer(const std::string& token, std::uint64_t run, Steering steeri
 void ArmHost::on_input(const std::string& token, std::uint64_t run, const InputReaction& reaction) {
   const std::lock_guard lock(impl_->mutex);
   impl_->seat.require(token);
-  impl_->find(run).job->on_input(reaction);
+  impl_->runs.find(run).job->on_input(reaction);
 }
 
 void ArmHost::require_control(const std::string& token) const {
   const std::lock_guard lock(impl_->mutex);
   impl_->seat.require(token);
+}
+
+void ArmHost::require_power(const std::string& token) const {
+  const std::lock_guard lock(impl_->mutex);
+  impl_->working_loop(token)->require_power();
 }
 
 void ArmHost::set_override(const std::string& token, double share) {
@@ -363,18 +323,31 @@ LoopCycle ArmHost::newest_cycle() const {
   return impl_->loop == nullptr ? impl_->last_cycle : impl_->loop->newest_cycle();
 }
 
+std::vector<ObservedCycle> ArmHost::observed(std::uint64_t from, std::size_t most) const {
+  const std::lock_guard lock(impl_->mutex);
+  if (impl_->loop == nullptr) return {};
+  return impl_->loop->observed(from, most);
+}
+
 HostStatus ArmHost::status() const {
   const std::lock_guard lock(impl_->mutex);
   HostStatus status = impl_->loop == nullptr ? impl_->last : look_at(*impl_->loop);
   status.operator_name = impl_->seat.name();
   status.control_loss = impl_->seat.loss();
-  status.run = impl_->last_run;
+  status.run = impl_->runs.last();
   return status;
+}
+
+std::vector<LogRecord> ArmHost::fault_cycles() const {
+  const std::lock_guard lock(impl_->mutex);
+  std::vector<LogRecord> cycles;
+  if (impl_->loop != nullptr) cycles = impl_->loop->fault_cycles();
+  return cycles.empty() ? impl_->fault_cycles : cycles;
 }
 
 std::shared_ptr<Job> ArmHost::job(std::uint64_t run) const {
   const std::lock_guard lock(impl_->mutex);
-  return impl_->find(run).job;
+  return impl_->runs.find(run).job;
 }
 
 void ArmHost::shut_down() {
@@ -384,7 +357,7 @@ void ArmHost::shut_down() {
     const std::lock_guard lock(impl_->mutex);
     impl_->quits = true;
     loop = impl_->loop;
-    if (!impl_->runs.empty()) job = impl_->runs.back().job;
+    if (const KeptRun* const newest = impl_->runs.newest()) job = newest->job;
   }
   impl_->changed.notify_all();
   if (job != nullptr) job->stop();

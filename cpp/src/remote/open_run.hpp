@@ -10,29 +10,29 @@
 
 namespace viapoint {
 
-/// A run that gets longer: an OpenJob, for callers in any thread.
+/// A run that gets longer: its Follower, for callers in any thread.
 class OpenRun {
  public:
-  explicit OpenRun(std::shared_ptr<OpenJob> job) : job_(std::move(job)) {}
+  explicit OpenRun(std::shared_ptr<Follower> run) : run_(std::move(run)) {}
 
-  /// As OpenJob::lengthen; it takes as long as the proof does.
+  /// As Follower::lengthen; it takes as long as the proof does.
   void lengthen(std::shared_ptr<const Trajectory> next, double leave) {
     const std::lock_guard lock(mutex_);
-    job_->lengthen(std::move(next), leave);
+    run_->lengthen(std::move(next), leave);
   }
-  /// As OpenJob::close.
+  /// As Follower::close.
   void close() {
     const std::lock_guard lock(mutex_);
-    job_->close();
+    run_->close();
   }
   [[nodiscard]] HandOver look() {
     const std::lock_guard lock(mutex_);
-    return {job_->fate(), job_->earliest_leave(), job_->waited_cycles()};
+    return {run_->fate(), run_->earliest_leave(), run_->waited_cycles()};
   }
 
  private:
   std::mutex mutex_;
-  std::shared_ptr<OpenJob> job_;
+  std::shared_ptr<Follower> run_;
 };
 
 }  // namespace viapoint

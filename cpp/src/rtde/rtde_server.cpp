@@ -34,6 +34,8 @@ constexpr std::int64_t kSecond = 1'000'000'000;
 constexpr std::int64_t kAfterWakeUp = 300'000;
 /// While nobody is shown anything, connections are looked at so often.
 constexpr std::int64_t kIdle = kSecond / 2;
+/// What the system keeps for a client that does not read. More would be old news.
+constexpr int kSendBuffer = 16 << 10;
 
 std::int64_t now_of_clock() {
   timespec now{};
@@ -151,6 +153,7 @@ struct RtdeServer::Impl {
     Descriptor client = rtde::accept_at(listener);
     if (!client.is_open()) admits_from = now + kIdle;  // the system has no room now
     if (!client.is_open() || clients.size() >= kMostClients) return;
+    rtde::bound_send_buffer(client, kSendBuffer);
     clients.emplace_back(std::move(client), arm, seconds(cycle), now);
   }
 

@@ -17,8 +17,6 @@
 namespace viapoint::rtde {
 namespace {
 
-/// What the system keeps for a client that does not read. More would be old news.
-constexpr int kSendBuffer = 16 << 10;
 constexpr int kBacklog = 64;
 /// A client that has gone without a word is found out within 25 s.
 constexpr int kProbeAfter = 10, kProbeEvery = 5, kProbes = 3;
@@ -67,7 +65,7 @@ Descriptor listen_at(const std::string& address, int port) {
       listen(listener.number(), kBacklog) != 0) {
     throw MotionError(
         ErrorCode::kBusy,
-        "cannot listen for RTDE on " + address + " port " + std::to_string(port) + ": " + reason(),
+        "cannot listen on " + address + " port " + std::to_string(port) + ": " + reason(),
         {"end the program that listens there, or choose another port"});
   }
   return listener;
@@ -84,12 +82,15 @@ Descriptor accept_at(const Descriptor& listener) {
   Descriptor client(accept4(listener.number(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
   if (!client.is_open()) return client;
   set(client.number(), IPPROTO_TCP, TCP_NODELAY, 1);
-  set(client.number(), SOL_SOCKET, SO_SNDBUF, kSendBuffer);
   set(client.number(), SOL_SOCKET, SO_KEEPALIVE, 1);
   set(client.number(), IPPROTO_TCP, TCP_KEEPIDLE, kProbeAfter);
   set(client.number(), IPPROTO_TCP, TCP_KEEPINTVL, kProbeEvery);
   set(client.number(), IPPROTO_TCP, TCP_KEEPCNT, kProbes);
   return client;
+}
+
+void bound_send_buffer(const Descriptor& to, int bytes) {
+  set(to.number(), SOL_SOCKET, SO_SNDBUF, bytes);
 }
 
 std::optional<std::size_t> send_some(const Descriptor& to, std::string_view bytes) {
@@ -105,5 +106,7 @@ std::optional<std::size_t> receive_some(const Descriptor& from, std::span<char> 
   if (received < 0 && (errno == EAGAIN || errno == EINTR)) return 0;
   return std::nullopt;
 }
+
+void end_of_speech(const Descriptor& to) { (void)shutdown(to.number(), SHUT_WR); }
 
 }  // namespace viapoint::rtde

@@ -25,6 +25,8 @@ class Descriptor {
   ~Descriptor();
 
   [[nodiscard]] int number() const { return number_; }
+  /// Hands it over to whoever closes it.
+  [[nodiscard]] int release() { return std::exchange(number_, -1); }
   [[nodiscard]] bool is_open() const { return number_ >= 0; }
 
  private:
@@ -37,9 +39,14 @@ class Descriptor {
 /// The next client, if one waits.
 [[nodiscard]] Descriptor accept_at(const Descriptor& listener);
 
+/// Has the system keep no more than this for a client that does not read.
+void bound_send_buffer(const Descriptor& to, int bytes);
+
 /// How many bytes went or came: 0 where the other side makes us wait, nothing where it is gone.
 [[nodiscard]] std::optional<std::size_t> send_some(const Descriptor& to, std::string_view bytes);
 [[nodiscard]] std::optional<std::size_t> receive_some(const Descriptor& from,
                                                       std::span<char> bytes);
+/// Tells the other side that nothing more comes.
+void end_of_speech(const Descriptor& to);
 
 }  // namespace viapoint::rtde

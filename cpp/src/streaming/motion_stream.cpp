@@ -3,19 +3,22 @@
 #include <algorithm>
 #include <iterator>
 #include <utility>
+#include <variant>
 
 namespace viapoint {
 namespace {
 
 /// With less motion than this before it, the arm is given what is certain, however little [s].
 constexpr double kEnough = 1.0;
+/// With less than so many times what handing over takes, steps are handed over as they come.
+constexpr double kHurry = 4.0;
 /// With less than this, and twice what handing over takes, it is to rest where no way is found to
 /// go on without; there is no hurry before, because such a rest is where the motion ends anyway
 /// [s].
 constexpr double kLittle = 0.02;
 
-bool is_over(const Job& job) {
-  const RunState state = job.state();
+bool is_over(const Progress& run) {
+  const RunState state = run.state();
   return state == RunState::kStopped || state == RunState::kFinished || state == RunState::kFault;
 }
 
@@ -41,22 +44,30 @@ MotionStream::MotionStream(RobotPtr robot, const MotionProgram& beginning, Follo
 
 void MotionStream::add(const Step& step) {
   require_no_trouble();
+  // The first motion should see as many steps as come at this very moment.
+  if (run_ != nullptr && !std::holds_alternative<SetOutput>(step.what)) hand_over(false);
   planner_.add(step);
   left_then_ = time_left();
   tried_ = Need::kNone;
   if (!awaited_) awaited_ = LateStep{steps_, step.source, 0};
   ++steps_;
-  // The next one may come at this very moment; the first motion should see as many as do.
-  if (job_ != nullptr) hand_over(false);
+  is_fresh_ = true;
+  if (run_ != nullptr && is_in_hurry()) hand_over(false);
 }
 
 void MotionStream::end() {
   planner_.end();
   tried_ = Need::kNone;
+  is_fresh_ = false;
   hand_over();
 }
 
-void MotionStream::hand_over() { hand_over(true); }
+void MotionStream::hand_over() {
+  if (std::exchange(is_fresh_, false) && !is_in_hurry()) return require_no_trouble();
+  hand_over(true);
+}
+
+bool MotionStream::is_in_hurry() const { return time_left() < kHurry * margin_; }
 
 void MotionStream::hand_over(bool may_rest) {
   require_no_trouble();
@@ -65,7 +76,7 @@ void MotionStream::hand_over(bool may_rest) {
   } catch (...) {
     // What follows does not begin where the arm rests.
     trouble_ = std::current_exception();
-    if (job_ != nullptr) job_->close();
+    if (run_ != nullptr) run_->close();
     throw;
   }
 }
@@ -76,9 +87,9 @@ void MotionStream::require_no_trouble() const {
 
 void MotionStream::hand_over_chunks(bool may_rest) {
   for (;;) {
-    if (job_ != nullptr && is_over(*job_)) return;
+    if (run_ != nullptr && is_over(*run_)) return;
     if (is_offered_ && !is_decided()) return;
-    const double not_before = job_ == nullptr ? 0.0 : job_->earliest_leave() + margin_;
+    const double not_before = run_ == nullptr ? 0.0 : run_->earliest_leave() + margin_;
     const double left = time_left();
     const bool is_now = may_rest && left < std::max(kLittle, 2.0 * margin_);
     const Need need = is_now ? Need::kNow : left < kEnough ? Need::kSoon : Need::kLater;
@@ -90,11 +101,11 @@ void MotionStream::hand_over_chunks(bool may_rest) {
     if (chunk) blamed_ = awaited_.value_or(blamed_);
     if (chunk || need == Need::kNow) awaited_.reset();
     if (!chunk) {
-      if (job_ != nullptr && planner_.done()) job_->close();
+      if (run_ != nullptr && planner_.done()) run_->close();
       return;
     }
     is_stop_ = planner_.stops() > stops;
-    if (job_ == nullptr) {
+    if (run_ == nullptr) {
       begin(std::move(*chunk));
     } else {
       offer(std::move(*chunk));
@@ -103,7 +114,7 @@ void MotionStream::hand_over_chunks(bool may_rest) {
 }
 
 void MotionStream::begin(MotionChunk chunk) {
-  job_ = follow_(std::make_shared<const Trajectory>(std::move(chunk.motion)));
+  run_ = follow_(std::make_shared<const Trajectory>(std::move(chunk.motion)));
   keep(chunk);
 }
 
@@ -113,16 +124,16 @@ void MotionStream::keep(MotionChunk& chunk) {
 }
 
 void MotionStream::offer(MotionChunk chunk) {
-  job_->lengthen(std::make_shared<const Trajectory>(std::move(chunk.motion)), chunk.begin);
+  run_->lengthen(std::make_shared<const Trajectory>(std::move(chunk.motion)), chunk.begin);
   is_offered_ = true;
   keep(chunk);
 }
 
 bool MotionStream::is_decided() {
-  const LinkFate fate = job_->fate();
+  const LinkFate fate = run_->fate();
   if (fate == LinkFate::kNotYet) return false;
   is_offered_ = false;
-  if (fate == LinkFate::kTooLate && !is_over(*job_)) {
+  if (fate == LinkFate::kTooLate && !is_over(*run_)) {
     is_stop_ = true;
     offer(planner_.after_rest());
     return is_decided();
@@ -132,7 +143,7 @@ bool MotionStream::is_decided() {
 }
 
 void MotionStream::note_late() {
-  const std::uint64_t waited = job_->waited_cycles() - waited_;
+  const std::uint64_t waited = run_->waited_cycles() - waited_;
   waited_ += waited;
   const bool is_late = waited > 0 || (is_stop_ && left_then_ < kEnough);
   if (!is_late || last_late_ == blamed_.step) return;
@@ -144,11 +155,11 @@ void MotionStream::note_late() {
 }
 
 double MotionStream::time_left() const {
-  return job_ == nullptr ? 0.0 : job_->duration() - job_->nominal_time();
+  return run_ == nullptr ? 0.0 : run_->duration() - run_->nominal_time();
 }
 
 int MotionStream::steps_ahead() const {
-  return job_ == nullptr ? steps_ : steps_ - 1 - std::max(0, job_->move());
+  return run_ == nullptr ? steps_ : steps_ - 1 - std::max(0, run_->move());
 }
 
 std::vector<CornerOutcome> MotionStream::take_corners() { return std::exchange(corners_, {}); }

@@ -151,6 +151,7 @@ class BarrierProblem {
 
   const Course* course_;
   Grid grid_;
+  bool holds_;  ///< a speed somewhere: there time cannot be stretched
   std::vector<Node> nodes_;
   std::vector<CellRows> cells_;
   std::vector<AccelerationRows> acceleration_rows_;

@@ -25,10 +25,43 @@ Square square_at(const ToolRate& rate, double u) {
   return square;
 }
 
+/// True where the first guess of a cell that is inside has the tool about as fast as it may be.
+bool nears_ceiling(const Stretch& stretch, const Grid& grid, size_t k) {
+  constexpr double kNear = 0.9;
+  if (k == 0 || k + 1 == grid.cells.size() || !limits_speed(stretch)) return false;
+  const Cell& cell = grid.cells[k];
+  return cell.gear * cell.gear * grid.square_rate[k - 1] >=
+             kNear * speed_ceiling(stretch, cell.s0).value ||
+         grid.square_rate[k] >= kNear * speed_ceiling(stretch, cell.s1).value;
+}
+
+/// True where a span that has the speed at its ends exceeds it by no more than half of what is left
+/// to it.
+bool keeps_below(const Stretch& stretch, const TimedSpan& span) {
+  ToolRate rate = stretch.tool->linear;
+  rate.error = 0.0;  // the ceiling has it
+  const double asked = stretch.tool->limits.speed;
+  return tool_speed_range(span.u, span.duration, rate, asked).most <=
+         asked * 0.5 * (1.0 + kHeldRoom);
+}
+
 }  // namespace
 
 bool is_held(const Stretch& stretch) {
   return stretch.tool != nullptr && stretch.tool->limits.hold_speed;
+}
+
+bool limits_speed(const Stretch& stretch) {
+  return stretch.tool != nullptr && std::isfinite(stretch.tool->limits.speed);
+}
+
+NodeRate speed_ceiling(const Stretch& stretch, double sigma) {
+  const NodeRate hold = hold_rate(stretch, sigma);
+  if (is_held(stretch)) return {hold.value * (2.0 - kHoldAim), hold.slope * (2.0 - kHoldAim)};
+  const ToolRate& rate = stretch.tool->linear;
+  const double value = std::sqrt(square_at(rate, sigma / stretch.length).value);
+  const double room = value / (kHeldRoom * (value + rate.error));
+  return {hold.value * room * room, hold.slope * room * room};
 }
 
 NodeRate hold_rate(const Stretch& stretch, double sigma) {
@@ -67,10 +100,16 @@ Grid refine_to_hold(const Course& course, Grid grid) {
   constexpr int kMostHalvings = 6;
   for (int halving = 0; halving < kMostHalvings; ++halving) {
     std::vector<bool> split;
-    for (const Cell& cell : grid.cells) {
+    for (size_t k = 0; k < grid.cells.size(); ++k) {
+      const Cell& cell = grid.cells[k];
       const Stretch& stretch = course.stretches()[cell.piece];
-      split.push_back(is_held(stretch) &&
-                      !holds_speed(stretch, hold_span(cell.piece, stretch, cell.s0, cell.s1)));
+      const bool held = is_held(stretch);
+      if (!held && !nears_ceiling(stretch, grid, k)) {
+        split.push_back(false);
+        continue;
+      }
+      const TimedSpan span = hold_span(cell.piece, stretch, cell.s0, cell.s1);
+      split.push_back(held ? !holds_speed(stretch, span) : !keeps_below(stretch, span));
     }
     split.front() = split.back() = false;
     if (std::none_of(split.begin(), split.end(), [](bool s) { return s; })) break;

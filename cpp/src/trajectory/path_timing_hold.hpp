@@ -13,11 +13,18 @@ namespace viapoint::path_timing {
 /// either side.
 inline constexpr double kHoldAim = 1.0 - 0.5 * kHeldWithin;
 
-/// Where ceilings are pressed against, those of the joints leave this much to what is between the
-/// nodes.
+/// Where ceilings are pressed against and time cannot be stretched, all but that of the speed to be
+/// held leave this much to what is between the nodes, and to the slack of the proof.
 inline constexpr double kHeldRoom = 1.002;
 
 [[nodiscard]] bool is_held(const Stretch& stretch);
+
+/// True where the tool's speed has a limit, to be held or not.
+[[nodiscard]] bool limits_speed(const Stretch& stretch);
+
+/// The largest ṡ² that the limit of the tool's speed allows, with what it leaves where the speed is
+/// not to be held, and its slope by σ. @pre limits_speed(stretch)
+[[nodiscard]] NodeRate speed_ceiling(const Stretch& stretch, double sigma);
 
 /// C and C' by σ. @pre is_held(stretch)
 [[nodiscard]] NodeRate hold_rate(const Stretch& stretch, double sigma);
@@ -31,7 +38,8 @@ inline constexpr double kHeldRoom = 1.002;
 /// True where hold_span() is proven to hold the speed.
 [[nodiscard]] bool holds_speed(const Stretch& stretch, const TimedSpan& span);
 
-/// The grid with cells halved until the speed can be held between their ends.
+/// The grid with cells halved until the speed can be held between their ends, and until the ceiling
+/// of a speed that is only limited is as good as a cubic there.
 [[nodiscard]] Grid refine_to_hold(const Course& course, Grid grid);
 
 /// The largest that the speed is, over the one asked for: a bound over all stretches to be held.

@@ -10,7 +10,7 @@
 namespace viapoint::path_timing {
 
 BarrierProblem::BarrierProblem(const Course& course, const Grid& grid)
-    : course_(&course), grid_(grid) {
+    : course_(&course), grid_(grid), holds_(course.holds_speed()) {
   const size_t cells = grid.cells.size();
   const size_t pairs = static_cast<size_t>(course.joints() + 1) / 2;
   cells_.reserve(cells);
@@ -87,18 +87,17 @@ void BarrierProblem::set_inner_ceilings(size_t k) {
   CellRows& rows = cells_[k];
   const double start = rows.gear * rows.gear * nodes_[k - 1].ceiling, end = nodes_[k].ceiling;
   rows.ceiling.fill(std::max(start, end));
-  if (!rows.held) return;
-  // b is to follow the ceiling of the tool's speed, so its cubic is held against that of C.
   const Cell& cell = grid_.cells[k];
   const Stretch& stretch = course_->stretches()[cell.piece];
-  const NodeRate from = hold_rate(stretch, cell.s0), to = hold_rate(stretch, cell.s1);
+  if (!holds_ || !limits_speed(stretch)) return;
+  // b is to follow the ceiling of the tool's speed, so its cubic is held against that of C.
+  const NodeRate from = speed_ceiling(stretch, cell.s0), to = speed_ceiling(stretch, cell.s1);
   const std::array<double, 2> inner{from.value + rows.length * from.slope / 3.0,
                                     to.value - rows.length * to.slope / 3.0};
   for (size_t i = 0; i < inner.size(); ++i) {
     if (!std::isfinite(inner[i])) continue;
     const double least = kLeast * std::min(start, end);
-    rows.ceiling[i] =
-        std::clamp(inner[i] * (2.0 - kHoldAim), least, std::max(least, rows.ceiling[i]));
+    rows.ceiling[i] = std::clamp(inner[i], least, std::max(least, rows.ceiling[i]));
   }
 }
 
@@ -149,13 +148,16 @@ void BarrierProblem::add_acceleration_rows(size_t stretch, double s, double gear
 
 double BarrierProblem::rate_ceiling(size_t stretch, double s) const {
   const Stretch& here = course_->stretches()[stretch];
-  if (here.straight) return here.rate_limit * here.rate_limit;
+  // Time that must not be stretched must not need it: see kHeldRoom.
+  const double room = holds_ ? kHeldRoom : 1.0;
+  if (here.straight) return here.rate_limit * here.rate_limit / (room * room);
   double v = 0.0;
   JointRates rates;
   course_->rates(stretch, s, rates);
   for (const double share : rates.velocity) v = std::max(v, std::abs(share));
-  if (is_held(here)) v *= kHeldRoom;
-  if (here.tool != nullptr) v = std::max(v, tool_at(here, s).velocity);
+  v *= room;
+  if (here.tool != nullptr)
+    v = std::max(v, (is_held(here) ? 1.0 : room) * tool_at(here, s).velocity);
   return 1.0 / (v * v);
 }
 

@@ -173,6 +173,7 @@ Timing quickest(const Course& course) {
     // the optimiser are corrected while it still keeps its distance from them.
     problem->set_limit_factors(
         corrections(*problem, rate, course, problem->spans(rate), kUsed, aim));
+    if (holds) problem->make_feasible(rate, 5, kUsed);
     // What it has when the numbers give out is a motion too.
     solved = solved && problem->solve(rate, kFirstWeight, kLastWeight);
     if (course.limits_tool())

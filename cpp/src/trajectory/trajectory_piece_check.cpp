@@ -45,7 +45,10 @@ bool is_wait(const TrajectoryPiece& piece) {
 
 bool is_count(int outputs) { return outputs >= 0 && outputs <= kMaxOutputsAPiece; }
 
-bool is_duration(double seconds) { return seconds > 0.0 && std::isfinite(seconds); }
+/// Below it 1/duration³ may leave the range of numbers, and the derivatives are none.
+constexpr double kShortest = 1e-30;
+
+bool is_duration(double seconds) { return seconds >= kShortest && std::isfinite(seconds); }
 
 std::string describe_fault(const TrajectoryPiece& piece, int joints) {
   std::ostringstream text;
@@ -54,7 +57,8 @@ std::string describe_fault(const TrajectoryPiece& piece, int joints) {
   } else if (piece.joints != joints) {
     text << "has " << piece.joints << " joints; the motion has " << joints;
   } else if (!is_duration(piece.duration)) {
-    text << "lasts " << piece.duration << " s; it must be more than 0 and finite";
+    text << "lasts " << piece.duration << " s; it must be at least " << kShortest
+         << " s and finite";
   } else if (!all_finite(piece)) {
     text << "has a coefficient that is not a finite number";
   } else if (!is_count(piece.outputs)) {

@@ -14,6 +14,7 @@ from . import profile
 
 __all__: list[str] = [
     "ANGLE_TOLERANCE",
+    "AtomicFile",
     "CYCLE",
     "Certificate",
     "Chunk",
@@ -68,6 +69,7 @@ __all__: list[str] = [
     "frame_from_points",
     "insert_knots",
     "joint_robot",
+    "json_rows",
     "load_program",
     "load_robot",
     "plan",
@@ -166,6 +168,24 @@ class Problem:
     def ways_out(self) -> list[str]:
         """
         What would make it right.
+        """
+
+class AtomicFile:
+    """
+    A file in pieces: a crash leaves the old content or the new.
+    """
+    def __init__(self, path: str) -> None: ...
+    def commit(self) -> None:
+        """
+        What was written takes the place of the old content.
+        """
+    def discard(self) -> None:
+        """
+        Removes what was written; nothing after commit().
+        """
+    def write(self, piece: bytes) -> None:
+        """
+        Writes on, beside the old content.
         """
 
 class JointLimits:
@@ -1044,7 +1064,7 @@ class ProcessStretch:
     @property
     def limit(self) -> str:
         """
-        What rules there: "rest" where the arm starts or stops, else the limit.
+        What rules there: "rest" where the arm starts or stops, else the limit; "timing" where none asks for less.
         """
     @property
     def lowest_speed(self) -> float:
@@ -1377,8 +1397,10 @@ class ControllerLoop:
         tool_speed: typing.SupportsFloat | typing.SupportsIndex,
         box_min: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"],
         box_max: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"],
+        processor: typing.SupportsInt | typing.SupportsIndex | None = None,
     ) -> None: ...
     def close(self) -> None: ...
+    def fault_cycles(self) -> Log: ...
     def guide(
         self,
         positions: collections.abc.Sequence[
@@ -1398,6 +1420,20 @@ class ControllerLoop:
         """
         The hand lets go of the simulated arm.
         """
+    def observed(
+        self,
+        from_cycle: typing.SupportsInt | typing.SupportsIndex,
+        most: typing.SupportsInt | typing.SupportsIndex,
+    ) -> tuple[
+        typing.Annotated[numpy.typing.NDArray[numpy.uint64], "[m, 1]"],
+        typing.Annotated[numpy.typing.NDArray[numpy.int64], "[m, 1]"],
+        typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"],
+        typing.Annotated[numpy.typing.NDArray[numpy.uint64], "[m, 1]"],
+        typing.Annotated[numpy.typing.NDArray[numpy.uint64], "[m, 1]"],
+    ]:
+        """
+        Of cycles that are still kept: numbers, stamps [ns], joints (k, n), inputs, outputs.
+        """
     def run(self, motion: PlannedMotion) -> Job: ...
     def set_inputs(
         self,
@@ -1407,14 +1443,20 @@ class ControllerLoop:
         """
         Switch inputs of the simulated drive, bit by bit.
         """
+    def switch_outputs(
+        self,
+        changed: typing.SupportsInt | typing.SupportsIndex,
+        on: typing.SupportsInt | typing.SupportsIndex,
+    ) -> None:
+        """
+        Switch outputs by hand from the next cycle on.
+        """
     @property
     def busy(self) -> bool: ...
     @property
     def datagrams(self) -> dict[str, int]: ...
     @property
     def fault(self) -> str: ...
-    @property
-    def fault_cycles(self) -> Log: ...
     @property
     def guided(self) -> bool: ...
     @property
@@ -1428,12 +1470,9 @@ class ControllerLoop:
     @property
     def measured(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
     @property
-    def observed(
-        self,
-    ) -> tuple[int, typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"], int, int]:
-        """
-        Of the last cycle: stamp [ns], joints, inputs, outputs.
-        """
+    def newest_cycle(self) -> int: ...
+    @property
+    def outputs(self) -> int: ...
     @property
     def override(self) -> float: ...
     @override.setter
@@ -1457,8 +1496,10 @@ class VirtualLoop:
         tool_speed: typing.SupportsFloat | typing.SupportsIndex,
         box_min: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"],
         box_max: typing.Annotated[numpy.typing.ArrayLike, numpy.float64, "[3, 1]"],
+        processor: typing.SupportsInt | typing.SupportsIndex | None = None,
     ) -> None: ...
     def close(self) -> None: ...
+    def fault_cycles(self) -> Log: ...
     def guide(
         self,
         positions: collections.abc.Sequence[
@@ -1478,6 +1519,20 @@ class VirtualLoop:
         """
         The hand lets go of the simulated arm.
         """
+    def observed(
+        self,
+        from_cycle: typing.SupportsInt | typing.SupportsIndex,
+        most: typing.SupportsInt | typing.SupportsIndex,
+    ) -> tuple[
+        typing.Annotated[numpy.typing.NDArray[numpy.uint64], "[m, 1]"],
+        typing.Annotated[numpy.typing.NDArray[numpy.int64], "[m, 1]"],
+        typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, n]"],
+        typing.Annotated[numpy.typing.NDArray[numpy.uint64], "[m, 1]"],
+        typing.Annotated[numpy.typing.NDArray[numpy.uint64], "[m, 1]"],
+    ]:
+        """
+        Of cycles that are still kept: numbers, stamps [ns], joints (k, n), inputs, outputs.
+        """
     def pass_cycles(self, count: typing.SupportsInt | typing.SupportsIndex) -> int:
         """
         Let cycles pass until a run ends or nothing moves; how many have passed.
@@ -1490,6 +1545,14 @@ class VirtualLoop:
     ) -> None:
         """
         Switch inputs of the simulated drive, bit by bit.
+        """
+    def switch_outputs(
+        self,
+        changed: typing.SupportsInt | typing.SupportsIndex,
+        on: typing.SupportsInt | typing.SupportsIndex,
+    ) -> None:
+        """
+        Switch outputs by hand from the next cycle on.
         """
     @property
     def busy(self) -> bool: ...
@@ -1510,12 +1573,9 @@ class VirtualLoop:
     @property
     def measured(self) -> typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"]: ...
     @property
-    def observed(
-        self,
-    ) -> tuple[int, typing.Annotated[numpy.typing.NDArray[numpy.float64], "[m, 1]"], int, int]:
-        """
-        Of the last cycle: stamp [ns], joints, inputs, outputs.
-        """
+    def newest_cycle(self) -> int: ...
+    @property
+    def outputs(self) -> int: ...
     @property
     def override(self) -> float: ...
     @override.setter
@@ -1577,7 +1637,7 @@ class MotionStream:
     @property
     def job(self) -> Job | None:
         """
-        The run, once it has begun.
+        The run, once it has begun, of a loop of this process.
         """
     @property
     def late(self) -> list[tuple[int, str, int, int]]:
@@ -1586,6 +1646,11 @@ class MotionStream:
         """
     @property
     def late_count(self) -> int: ...
+    @property
+    def state(self) -> str | None:
+        """
+        Of the run, once it has begun.
+        """
     @property
     def steps_ahead(self) -> int:
         """
@@ -1702,6 +1767,11 @@ def insert_knots(
 def joint_robot(limits: JointLimits) -> RobotModel:
     """
     Joints with limits and no kinematics.
+    """
+
+def json_rows(values: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> list[str]:
+    """
+    Each row of a matrix as a list in JSON; null is no finite number.
     """
 
 def load_program(path: str) -> MotionProgram: ...

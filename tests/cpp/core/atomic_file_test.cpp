@@ -3,12 +3,14 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/file.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <chrono>
 #include <csignal>
+#include <cstddef>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -20,7 +22,7 @@
 namespace viapoint {
 namespace {
 
-class AtomicFile : public testing::Test {
+class AtomicFiles : public testing::Test {
  protected:
   void SetUp() override {
     std::string pattern = (std::filesystem::temp_directory_path() / "viapoint-XXXXXX").string();
@@ -28,19 +30,109 @@ class AtomicFile : public testing::Test {
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
+  [[nodiscard]] std::ptrdiff_t files() const {
+    return std::distance(std::filesystem::directory_iterator(folder_), {});
+  }
+
   std::filesystem::path folder_;
 };
 
-TEST_F(AtomicFile, IsReadBackAndReplaced) {
+TEST_F(AtomicFiles, IsReadBackAndReplaced) {
   const std::string path = folder_ / "points.json";
   write_file_atomically(path, "old");
   write_file_atomically(path, "new");
   EXPECT_EQ(read_file(path), "new");
   // Nothing is left beside it.
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1);
+  EXPECT_EQ(files(), 1);
 }
 
-TEST_F(AtomicFile, KeepsTheRightsOfTheFileItReplaces) {
+TEST_F(AtomicFiles, InPiecesReplacesTheOldFileWhenItIsCommittedOnly) {
+  const std::string path = folder_ / "log.csv";
+  write_file_atomically(path, "old");
+  {
+    AtomicFile file(path);
+    for (const std::string_view piece : {"a", "", "bc"}) file.write(piece);
+    EXPECT_EQ(read_file(path), "old");
+    file.commit();
+    EXPECT_EQ(read_file(path), "abc");
+    file.discard();
+    EXPECT_EQ(read_file(path), "abc");
+  }
+  EXPECT_EQ(read_file(path), "abc");
+  EXPECT_EQ(files(), 1);
+}
+
+TEST_F(AtomicFiles, ThatIsNotCommittedLeavesTheOldFileAndNothingElse) {
+  const std::string path = folder_ / "log.csv";
+  write_file_atomically(path, "old");
+  {
+    AtomicFile file(path);
+    file.write("part");
+    EXPECT_EQ(files(), 2);
+  }
+  EXPECT_EQ(files(), 1);
+  AtomicFile file(path);
+  file.write("part");
+  file.discard();
+  EXPECT_EQ(files(), 1);
+  EXPECT_THROW(file.write("more"), MotionError);
+  EXPECT_THROW(file.commit(), MotionError);
+  EXPECT_EQ(read_file(path), "old");
+}
+
+TEST_F(AtomicFiles, HasTheRightsOfTheOldOneBeforeItsFirstPiece) {
+  const std::string path = folder_ / "log.csv";
+  write_file_atomically(path, "secret");
+  ASSERT_EQ(::chmod(path.c_str(), 0600), 0);
+  const AtomicFile file(path);
+  for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
+    struct stat status{};
+    ASSERT_EQ(::stat(entry.path().c_str(), &status), 0);
+    EXPECT_EQ(status.st_mode & 0777U, 0600U) << entry.path();
+  }
+}
+
+TEST_F(AtomicFiles, IsLeftAloneByAChildThatWasForkedMeanwhile) {
+  const std::string path = folder_ / "log.csv";
+  AtomicFile file(path);
+  file.write("a");
+  const pid_t child = ::fork();
+  if (child == 0) {
+    file.discard();
+    ::_exit(0);
+  }
+  ::waitpid(child, nullptr, 0);
+  file.write("b");
+  file.commit();
+  EXPECT_EQ(read_file(path), "ab");
+}
+
+TEST_F(AtomicFiles, OnAFullDiskIsToldByNameAndLeavesNothing) {
+  const std::string path = folder_ / "log.csv";
+  write_file_atomically(path, "old");
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  // SIG_IGN is the C library's macro: a handler made of a number.
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);  // NOLINT(performance-no-int-to-ptr)
+  const rlimit small{10'000, before.rlim_max};
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
+  std::string told;
+  try {
+    AtomicFile file(path);
+    for (int piece = 0; piece < 3; ++piece) file.write(std::string(4'000, 'x'));
+    file.commit();
+  } catch (const MotionError& error) {
+    told = error.what();
+    EXPECT_NE(error.problem().ways_out.at(0).find("make room"), std::string::npos);
+  }
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  static_cast<void>(std::signal(SIGXFSZ, handler));
+  EXPECT_NE(told.find(path), std::string::npos) << told;
+  EXPECT_EQ(read_file(path), "old");
+  EXPECT_EQ(files(), 1);
+}
+
+TEST_F(AtomicFiles, KeepsTheRightsOfTheFileItReplaces) {
   const std::string path = folder_ / "points.json";
   write_file_atomically(path, "old");
   std::filesystem::permissions(
@@ -51,7 +143,7 @@ TEST_F(AtomicFile, KeepsTheRightsOfTheFileItReplaces) {
   EXPECT_EQ(status.st_mode & 0777U, 0600U);
 }
 
-TEST_F(AtomicFile, FollowsLinksAndWritesIntoDevices) {
+TEST_F(AtomicFiles, FollowsLinksAndWritesIntoDevices) {
   const std::string path = folder_ / "points.json";
   const std::string link = folder_ / "link.json";
   write_file_atomically(path, "old");
@@ -64,7 +156,7 @@ TEST_F(AtomicFile, FollowsLinksAndWritesIntoDevices) {
   EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
 }
 
-TEST_F(AtomicFile, HonoursTheUmask) {
+TEST_F(AtomicFiles, HonoursTheUmask) {
   const std::string path = folder_ / "secret.json";
   const mode_t before = ::umask(077);
   write_file_atomically(path, "x");
@@ -74,7 +166,7 @@ TEST_F(AtomicFile, HonoursTheUmask) {
   EXPECT_EQ(status.st_mode & 0777U, 0600U);
 }
 
-TEST_F(AtomicFile, RefusesByNameWhereItCannotWriteOrRead) {
+TEST_F(AtomicFiles, RefusesByNameWhereItCannotWriteOrRead) {
   const auto expect_named = [](const auto& action, const std::string& path) {
     try {
       action();
@@ -90,7 +182,7 @@ TEST_F(AtomicFile, RefusesByNameWhereItCannotWriteOrRead) {
   expect_named([&] { (void)read_file(folder_); }, folder_);
 }
 
-TEST_F(AtomicFile, RefusesANameWithANulCharacter) {
+TEST_F(AtomicFiles, RefusesANameWithANulCharacter) {
   const std::string path = folder_ / "a";
   write_file_atomically(path, "precious");
   const std::string other = path + std::string("\0b.json", 7);
@@ -105,7 +197,7 @@ TEST_F(AtomicFile, RefusesANameWithANulCharacter) {
   }
 }
 
-TEST_F(AtomicFile, TellsAWayOut) {
+TEST_F(AtomicFiles, TellsAWayOut) {
   for (const auto& path : {folder_ / "no" / "such.json", folder_, std::filesystem::path()}) {
     try {
       (void)read_file(path.string());
@@ -124,7 +216,7 @@ pid_t process_that_ended() {
   return child;
 }
 
-TEST_F(AtomicFile, RemovesWhatKilledProcessesLeftOfTheSameFileAndNothingElse) {
+TEST_F(AtomicFiles, RemovesWhatKilledProcessesLeftOfTheSameFileAndNothingElse) {
   const std::string dead = std::to_string(process_that_ended());
   const std::string alive = std::to_string(::getppid());
   const std::vector<std::string> gone{".p.json." + dead + "-0", ".p.json." + dead + "-17"};
@@ -140,7 +232,7 @@ TEST_F(AtomicFile, RemovesWhatKilledProcessesLeftOfTheSameFileAndNothingElse) {
   for (const std::string& name : kept) EXPECT_TRUE(exists(folder_ / name)) << name;
 }
 
-TEST_F(AtomicFile, LeavesALeftoverThatSomebodyHoldsLocked) {
+TEST_F(AtomicFiles, LeavesALeftoverThatSomebodyHoldsLocked) {
   const std::filesystem::path name =
       folder_ / (".p.json." + std::to_string(process_that_ended()) + "-0");
   const int file = ::open(name.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
@@ -152,7 +244,7 @@ TEST_F(AtomicFile, LeavesALeftoverThatSomebodyHoldsLocked) {
   EXPECT_FALSE(exists(name));
 }
 
-TEST_F(AtomicFile, SurvivesKillAtAnyMoment) {
+TEST_F(AtomicFiles, SurvivesKillAtAnyMoment) {
   // A child writes two contents in turn as fast as it can and is killed at varying moments; what
   // is found must be one of them, whole.
   const std::string path = folder_ / "points.json";

@@ -198,6 +198,15 @@ TEST(UrdfDescription, PassesOverElementsThatAreNone) {
             description_from_urdf(kGood, "trio.urdf").chain.size());
 }
 
+TEST(UrdfDescription, RefusesARingOfJointsBesideTheRoot) {
+  const std::string ring = with(kGood, "</robot>", R"(<link name="a"/><link name="b"/>
+    <joint name="ab" type="fixed"><parent link="a"/><child link="b"/></joint>
+    <joint name="ba" type="fixed"><parent link="b"/><child link="a"/></joint></robot>)");
+  const Problem problem = problem_of(ring);
+  EXPECT_TRUE(says(problem, "form a ring")) << problem.describe();
+  EXPECT_TRUE(says(problem, "joint \"ba\"") || says(problem, "joint \"ab\"")) << problem.describe();
+}
+
 TEST(UrdfDescription, SaysWhatMendsAComplaint) {
   const auto way = [](const Problem& problem) {
     return problem.ways_out.empty() ? "" : problem.ways_out.front();
@@ -221,6 +230,22 @@ TEST(UrdfDescription, RefusesJointsItCannotMove) {
 
 TEST(UrdfDescription, RefusesAnAxisWithoutDirection) {
   EXPECT_TRUE(says(problem_of(with(kGood, "xyz=\"0 0 -2\"", "xyz=\"0 0 0\"")), "elbow"));
+}
+
+TEST(UrdfDescription, RefusesLengthsBeyondEveryArm) {
+  const Problem problem = problem_of(with(kGood, "0 0 0.5", "0 0 2e6"));
+  EXPECT_TRUE(says(problem, "\"shoulder\" is 2e+06 m from what carries it")) << problem.describe();
+  EXPECT_TRUE(says(problem, "1e+06 m"));
+  // Together, though neither is by itself; and behind the last joint that moves.
+  const std::string far = with(with(kGood, "1 0 0", "9e5 0 0"), "<axis xyz=\"0 0 -2\"/>",
+                               "<origin xyz=\"9e5 0 0\"/><axis xyz=\"0 0 -2\"/>");
+  EXPECT_TRUE(says(problem_of(far), "\"elbow\" is 1800000 m"));
+  EXPECT_TRUE(says(problem_of(with(kGood, "0.1 0 0", "2e6 0 0")), "\"end\" is 2e+06 m"));
+}
+
+TEST(UrdfDescription, RefusesEmptyNames) {
+  EXPECT_TRUE(says(problem_of(with(kGood, "\"trio\"", "\"\"")), "the robot has an empty name"));
+  EXPECT_TRUE(says(problem_of(with(kGood, "\"elbow\"", "\"\"")), "a joint has an empty name"));
 }
 
 TEST(UrdfDescription, RoundTripsThroughYaml) {

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
+#include <vector>
 
 #include "planning/planner_fixture.hpp"
+#include "planning/process_proof.hpp"
 #include "viapoint/planning/stream_planner.hpp"
 #include "viapoint/trajectory/tool_certificate.hpp"
 
@@ -64,6 +67,96 @@ TEST(ProcessSpeed, IsHeldThroughCornersWithAZoneAndAllStretchesThatAreNotAreList
         ASSERT_GE(speed, 0.05 * (1.0 - kHeldWithin) * (1.0 - 1e-8)) << t;
       }
     }
+  }
+}
+
+/// Lines in a row, the first or the middle one of them at a process speed.
+struct Lines {
+  JointVector start;
+  std::vector<Eigen::Vector3d> ways{};
+  size_t process = 0;
+  double process_speed = 0.0, speed = 0.0;  ///< of that line, and of the others [m/s]
+  Zone zone{};
+};
+
+enum class Others { kMoves, kProcesses };
+
+PlannedMotion plan(const RobotPtr& arm, const Lines& lines, Zone zone, Others others) {
+  Script script(*arm, lines.start);
+  Pose at = arm->forward().pose(lines.start);
+  for (size_t k = 0; k < lines.ways.size(); ++k) {
+    at.translation() += lines.ways[k];
+    MoveOptions options;
+    options.zone = zone;
+    if (k == lines.process) {
+      options.process_speed = lines.process_speed;
+    } else if (others == Others::kProcesses) {
+      options.process_speed = lines.speed;
+    } else {
+      options.speed = lines.speed;
+    }
+    script.add(LinMove{PoseTarget{at}}, options);
+  }
+  return MotionPlanner(arm).plan(script.program());
+}
+
+/// The share of the process line's way along which its speed is not held.
+double share_lost(const PlannedMotion& motion, const Lines& lines) {
+  double lost = 0.0;
+  for (const ProcessStretch& stretch : motion.process_stretches) {
+    if (stretch.move == static_cast<int>(lines.process)) {
+      lost += stretch.to_length - stretch.from_length;
+    }
+  }
+  return lost / lines.ways[lines.process].norm();
+}
+
+TEST(ProcessSpeed, IsHeldUpToTheRampBeforeASlowerMove) {
+  const RobotPtr arm = robot("ur5e");
+  Lines lines{degrees({0, -90, 90, -90, -90, 0}), {{0.0, 0.1, 0.0}, {-0.1, 0.0, -0.1}}};
+  lines.process_speed = 0.1;
+  const Zone zone{ZoneKind::kDeviation, 0.003};
+  for (const double speed : {0.08, 0.1, 0.2}) {
+    SCOPED_TRACE(speed);
+    lines.speed = speed;
+    const PlannedMotion motion = plan(arm, lines, zone, Others::kMoves);
+    EXPECT_LE(share_lost(motion, lines), 0.1);
+    ASSERT_FALSE(motion.process_stretches.empty());
+    EXPECT_EQ(motion.process_stretches.front().limit, "rest");
+    EXPECT_LE(motion.process_stretches.front().to, 0.1);
+  }
+}
+
+TEST(ProcessSpeed, IsHeldBesideOtherMovesAsBesideProcessMovesOrStops) {
+  // What the other moves ask for is no reason to lose more of the process: a corner with a slower
+  // or a quicker one costs no more than that between processes, and one in which the arm stops no
+  // more than a stop.
+  constexpr unsigned kSeeds = 200;
+  constexpr double kMore = 0.01;
+  const RobotPtr arm = robot("ur5e");
+  for (unsigned seed = 0; seed < kSeeds; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937 random(seed);
+    const auto uniform = [&](double low, double high) {
+      return std::uniform_real_distribution<double>(low, high)(random);
+    };
+    Lines lines{degrees({0, -90, 95, -95, -90, 0})};
+    for (double& q : lines.start) q += uniform(-0.2, 0.2);
+    const bool led_in = random() % 2 == 0;
+    lines.process = led_in ? 1 : 0;
+    for (size_t k = 0; k < (led_in ? 3u : 2u); ++k) {
+      const double x = uniform(-1.0, 1.0), y = uniform(-1.0, 1.0), z = uniform(-1.0, 1.0);
+      lines.ways.push_back(Eigen::Vector3d(x, y, z).normalized() * uniform(0.05, 0.12));
+    }
+    lines.process_speed = uniform(0.03, 0.15);
+    lines.speed = lines.process_speed * std::exp(uniform(-1.2, 1.2));
+    lines.zone = random() % 2 == 0 ? Zone{ZoneKind::kDeviation, uniform(0.001, 0.005)}
+                                   : Zone{ZoneKind::kRadius, uniform(0.004, 0.02)};
+    const double lost = share_lost(plan(arm, lines, lines.zone, Others::kMoves), lines);
+    if (lost <= kMore) continue;
+    const double least = share_lost(plan(arm, lines, lines.zone, Others::kProcesses), lines);
+    if (lost <= least + kMore) continue;
+    EXPECT_LE(lost, share_lost(plan(arm, lines, {}, Others::kMoves), lines) + kMore);
   }
 }
 
@@ -154,6 +247,41 @@ TEST(ProcessSpeed, IsToldOfInChunksAsOfTheWhole) {
       EXPECT_NEAR(told[k].to_length, expected.to_length, 1e-3);
     }
   }
+}
+
+TEST(ProcessSpeed, IsSaidToBeLostByTheTimingWhereALowerOneIsKeptWithoutNeed) {
+  // The tool goes 1 m by u, as the first joint goes 1 rad: up to a speed, which it then keeps.
+  const RobotPtr arm = robot("ur5e");
+  constexpr double kAsked = 0.1, kRamp = 0.05, kKept = 0.5;
+  ToolRates rates;
+  rates.linear.coefficients[0][0] = 1.0;
+  rates.limits.speed = kAsked;
+  rates.limits.hold_speed = true;
+  const auto stretch_at = [&](double speed) {
+    TrajectoryPiece ramp;
+    ramp.joints = arm->joints();
+    ramp.path[1][0] = 1.0;
+    ramp.duration = kRamp;
+    ramp.timing[2] = 0.5 * speed * kRamp;
+    TrajectoryPiece kept = ramp;
+    kept.duration = kKept;
+    kept.timing = {ramp.timing[2], speed * kKept};
+    planning::ProcessProof proof;
+    proof.add(arm->limits(), ramp, rates, 0.0);
+    proof.add(arm->limits(), kept, rates, kRamp);
+    const std::vector<ProcessStretch> stretches = proof.take();
+    return stretches.size() == 1 ? stretches.front() : ProcessStretch{};
+  };
+  const ProcessStretch held = stretch_at(kAsked * (1.0 - 0.5 * kHeldWithin));
+  EXPECT_EQ(held.limit, "rest");
+  EXPECT_EQ(held.to, kRamp);
+  const ProcessStretch lower = stretch_at(0.99 * kAsked);
+  EXPECT_EQ(lower.limit, "timing");
+  EXPECT_FALSE(lower.joint);
+  EXPECT_EQ(lower.to, kRamp + kKept);
+  const Problem warning = planning::warning_of(lower);
+  EXPECT_NE(warning.message.find("no limit asks for less"), std::string::npos);
+  EXPECT_FALSE(warning.ways_out.empty());
 }
 
 TEST(ProcessSpeed, IsRefusedWhereTheJointsMove) {

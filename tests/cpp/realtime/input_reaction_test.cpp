@@ -88,6 +88,38 @@ TEST(InputReaction, StopsForGoodAndLeavesAStopAlone) {
   EXPECT_LT(cell.job->nominal_time(), cell.trajectory->duration());
 }
 
+TEST(InputReaction, TheSaferOfOneCycleCounts) {
+  Cell cell;
+  cell.job->on_input({1, true, Wish::kRun});
+  cell.job->on_input({2, true, Wish::kPause});
+  *cell.inputs = 0b110;
+  cell.loop.pass(10'000);
+  EXPECT_EQ(cell.job->state(), RunState::kPaused) << "one input resumes, another pauses";
+
+  *cell.inputs = 0;
+  cell.loop.pass(2);
+  cell.job->resume();
+  cell.job->on_input({1, true, Wish::kStop});
+  cell.job->on_input({2, true, Wish::kPause});
+  cell.job->on_input({3, true, Wish::kRun});
+  cell.loop.pass(50);
+  ASSERT_EQ(cell.job->state(), RunState::kRunning);
+  *cell.inputs = 0b1110;
+  cell.loop.pass(10'000);
+  EXPECT_EQ(cell.job->state(), RunState::kStopped);
+}
+
+TEST(InputReaction, DoesNotResumeWhatIsPausedInTheSameCycle) {
+  Cell cell;
+  cell.loop.pass(50);
+  cell.job->on_input({4, true, Wish::kRun});
+  *cell.inputs = 1U << 4;
+  cell.loop.pass(1);  // the drive reports it: the next cycle acts
+  cell.job->pause();
+  cell.loop.pass(10'000);
+  EXPECT_EQ(cell.job->state(), RunState::kPaused);
+}
+
 TEST(InputReaction, IsRefusedWhereItMeansNothing) {
   Cell cell;
   EXPECT_THROW(cell.job->on_input({64, true, Wish::kPause}), MotionError);

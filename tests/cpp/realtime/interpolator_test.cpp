@@ -10,48 +10,12 @@
 #include "realtime/no_allocation_scope.hpp"
 #include "realtime/random_motion.hpp"
 #include "realtime/rate_path.hpp"
+#include "realtime/ticking.hpp"
 
 namespace viapoint {
 namespace {
 
-constexpr std::chrono::nanoseconds kCycle{2'000'000};
-constexpr double kSeconds = 2e-3;
 constexpr unsigned kMotions = problems(2000U);
-
-/// What a tick tells, as the log would hold it.
-LogRecord tick(Interpolator& interpolator) {
-  Setpoint setpoint;
-  LogRecord record;
-  record.state = interpolator.tick(setpoint);
-  record.cycle = setpoint.cycle;
-  record.nominal_time = interpolator.nominal_time();
-  record.rate = interpolator.rate();
-  record.move = interpolator.move();
-  record.outputs = setpoint.outputs;
-  record.q = setpoint.q;
-  record.qd = setpoint.qd;
-  record.qdd = setpoint.qdd;
-  record.qddd = setpoint.qddd;
-  return record;
-}
-
-Interpolator start(const Motion& motion) {
-  Interpolator interpolator(motion.limits, kCycle, motion.trajectory.at(0.0).q);
-  interpolator.begin(motion.trajectory);
-  return interpolator;
-}
-
-bool over(RunState state) { return state == RunState::kFinished || state == RunState::kStopped; }
-
-/// One joint over 20 rad: long phases at each limit.
-Motion long_move(double velocity, double acceleration, double jerk) {
-  Motion motion;
-  motion.limits = even_limits(1, velocity, acceleration, jerk);
-  std::vector<TrajectoryPiece> pieces;
-  append_straight(pieces, JointVector::Zero(1), JointVector::Constant(1, 20.0), motion.limits, 0);
-  motion.trajectory = Trajectory(std::move(pieces), motion.limits);
-  return motion;
-}
 
 TEST(Interpolator, HoldsPositionUntilAMotionBegins) {
   const JointVector q = JointVector::LinSpaced(3, 0.1, 0.3);
@@ -234,104 +198,6 @@ TEST(Interpolator, SetpointDerivativesAreThoseByRealTime) {
       ASSERT_NEAR(b.q[i] - a.q[i], step, 0.02 * jerk_step) << "cycle " << k;
     }
   }
-}
-
-TEST(Interpolator, StopsFromAnywhereOnThePath) {
-  int stopped = 0;
-  for (unsigned seed = 0; seed < kMotions; ++seed) {
-    SCOPED_TRACE(seed);
-    std::mt19937 random(seed);
-    const Motion motion = random_motion(random);
-    const double share = std::uniform_real_distribution<double>(0.0, 1.1)(random);
-    Interpolator interpolator = start(motion);
-    if (seed % 3 == 0) interpolator.set_override(0.4);
-    std::vector<LogRecord> log;
-    while (interpolator.active()) {
-      if (interpolator.nominal_time() >= share * motion.trajectory.duration()) {
-        interpolator.wish(Wish::kStop);
-        interpolator.wish(Wish::kRun);  // too late: a stop is final
-      }
-      log.push_back(tick(interpolator));
-      ASSERT_EQ(log.back().q, motion.trajectory.at(log.back().nominal_time).q);
-      ASSERT_LT(log.size(), 20000U);
-    }
-    ASSERT_TRUE(over(interpolator.state()));
-    if (interpolator.state() == RunState::kStopped) {
-      ++stopped;
-      ASSERT_TRUE(log.back().qd.isZero(0.0));
-      ASSERT_TRUE(log.back().qdd.isZero(0.0));
-      ASSERT_LT(log.back().nominal_time, motion.trajectory.duration());
-    }
-    ASSERT_LE(worst_shares(motion, log, kSeconds, 10).worst(), 1.0 + 1e-6);
-    const LogRecord after = tick(interpolator);
-    ASSERT_EQ(after.q, log.back().q);
-  }
-  EXPECT_GT(stopped, static_cast<int>(kMotions / 2));
-}
-
-TEST(Interpolator, StopsFromFullSpeedAlmostAsFastAsAJointCan) {
-  struct Case {
-    double velocity, acceleration, jerk, quickest;
-  };
-  for (const Case& c : {Case{2.0, 20.0, 200.0, 0.2}, Case{2.0, 4.0, 10.0, 0.9},
-                        Case{3.0, 30.0, 100.0, 2.0 * std::sqrt(0.03)}}) {
-    const Motion motion = long_move(c.velocity, c.acceleration, c.jerk);
-    Interpolator interpolator = start(motion);
-    while (interpolator.nominal_time() < 0.5 * motion.trajectory.duration()) {
-      static_cast<void>(tick(interpolator));
-    }
-    interpolator.wish(Wish::kStop);
-    int cycles = 0;
-    for (; interpolator.active(); ++cycles) static_cast<void>(tick(interpolator));
-    EXPECT_EQ(interpolator.state(), RunState::kStopped);
-    EXPECT_LE((cycles - 1) * kSeconds, c.quickest + 3 * kSeconds);
-  }
-}
-
-TEST(Interpolator, OverrideSettlesExactlyOnWhatWasAskedFor) {
-  const Motion motion = long_move(2.0, 20.0, 200.0);
-  Interpolator interpolator = start(motion);
-  for (const double share : {0.5, 0.25, 0.9, 1.0, 0.1, 1.0}) {
-    interpolator.set_override(share);
-    for (int k = 0; k < 300; ++k) static_cast<void>(tick(interpolator));
-    const LogRecord record = tick(interpolator);
-    EXPECT_EQ(record.rate, share);
-    EXPECT_EQ(record.qdd[0], 0.0);
-    EXPECT_EQ(record.state, RunState::kRunning);
-  }
-}
-
-TEST(Interpolator, PauseRestsAndResumeGoesOnFromThere) {
-  const Motion motion = long_move(2.0, 20.0, 200.0);
-  Interpolator interpolator = start(motion);
-  for (int k = 0; k < problems(1000); ++k) static_cast<void>(tick(interpolator));
-  interpolator.wish(Wish::kPause);
-  EXPECT_EQ(tick(interpolator).state, RunState::kPausing);
-  for (int k = 0; k < 200; ++k) static_cast<void>(tick(interpolator));
-  const LogRecord paused = tick(interpolator);
-  EXPECT_EQ(paused.state, RunState::kPaused);
-  EXPECT_EQ(paused.qd[0], 0.0);
-  interpolator.wish(Wish::kRun);
-  const LogRecord resumed = tick(interpolator);
-  EXPECT_EQ(resumed.state, RunState::kRunning);
-  EXPECT_EQ(resumed.q, paused.q);
-  while (interpolator.active()) static_cast<void>(tick(interpolator));
-  EXPECT_EQ(interpolator.state(), RunState::kFinished);
-}
-
-TEST(Interpolator, OverrideOfZeroActsAsAPause) {
-  const Motion motion = long_move(2.0, 20.0, 200.0);
-  Interpolator interpolator(motion.limits, kCycle, JointVector::Zero(1));
-  interpolator.set_override(0.0);
-  interpolator.begin(motion.trajectory);
-  for (int k = 0; k < 20; ++k) {
-    const LogRecord record = tick(interpolator);
-    EXPECT_EQ(record.state, RunState::kPaused);
-    EXPECT_EQ(record.nominal_time, 0.0);
-  }
-  interpolator.set_override(1.0);
-  while (interpolator.active()) static_cast<void>(tick(interpolator));
-  EXPECT_EQ(interpolator.state(), RunState::kFinished);
 }
 
 TEST(Interpolator, RunsOneMotionAfterAnother) {

@@ -58,12 +58,14 @@ TEST(LogCsv, AnEmptyLogHasAHeaderOnly) {
 
 TEST(LogCsv, WritesTheFileAndRefusesAFolderThatIsNotThere) {
   const auto path = std::filesystem::path(testing::TempDir()) / "log.csv";
-  const std::vector<LogRecord> log = {record_of(0.5)};
+  std::vector<LogRecord> log;  // some pieces long
+  for (int i = 0; i < 10'000; ++i) log.push_back(record_of(i / 7.0));
   write_log_csv(path.string(), log);
   std::ifstream file(path);
   std::stringstream content;
   content << file.rdbuf();
   EXPECT_EQ(content.str(), log_to_csv(log));
+  EXPECT_GT(content.str().size(), 1'000'000U);
   std::filesystem::remove(path);
   EXPECT_THROW(write_log_csv("/nowhere/at/all/log.csv", log), MotionError);
 }

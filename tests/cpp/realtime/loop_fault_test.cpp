@@ -79,6 +79,16 @@ void await(const std::shared_ptr<Job>& job, RunState state) {
   ASSERT_EQ(job->state(), state) << to_string(job->state());
 }
 
+/// Waits for what comes soon in virtual time, and fails where it never does.
+template <typename Condition>
+void await_that(const Condition& holds) {
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  while (!holds()) {
+    ASSERT_LT(std::chrono::steady_clock::now(), deadline);
+    std::this_thread::yield();
+  }
+}
+
 std::string fault_of(const std::shared_ptr<Job>& job) {
   try {
     job->wait(20.0);
@@ -95,7 +105,7 @@ TEST(LoopFault, ADriveThatFallsSilentOrJumpsStopsTheArmOnItsPath) {
     SCOPED_TRACE(static_cast<int>(trouble));
     Cell cell;
     const auto job = cell.loop->run(cell.trajectory);
-    while (job->nominal_time() < 0.5) std::this_thread::yield();
+    await_that([&] { return job->nominal_time() >= 0.5; });
     cell.bench->trouble = trouble;
     const std::string fault = fault_of(job);
     EXPECT_NE(fault.find(trouble == Bench::Trouble::kSilent ? "not answered" : "jump"),
@@ -119,7 +129,7 @@ TEST(LoopFault, ADriveThatFallsSilentOrJumpsStopsTheArmOnItsPath) {
 TEST(LoopFault, APowerThatGoesIsReportedWithWhereTheArmWas) {
   Cell cell;
   const auto job = cell.loop->run(cell.trajectory);
-  while (job->nominal_time() < 0.5) std::this_thread::yield();
+  await_that([&] { return job->nominal_time() >= 0.5; });
   cell.bench->trouble = Bench::Trouble::kPower;
   const std::string fault = fault_of(job);
   EXPECT_NE(fault.find("category 0"), std::string::npos) << fault;
@@ -132,7 +142,7 @@ TEST(LoopFault, APowerThatGoesIsReportedWithWhereTheArmWas) {
 TEST(LoopFault, APowerThatGoesDuringTheGuardsStopIsNotToldAsAStop) {
   Cell cell;
   const auto job = cell.loop->run(cell.trajectory);
-  while (job->nominal_time() < 0.5) std::this_thread::yield();
+  await_that([&] { return job->nominal_time() >= 0.5; });
   cell.bench->trouble = Bench::Trouble::kJumpThenPower;
   const std::string fault = fault_of(job);
   EXPECT_NE(fault.find("jump"), std::string::npos) << fault;
@@ -145,7 +155,7 @@ TEST(LoopFault, APowerThatGoesDuringTheGuardsStopIsNotToldAsAStop) {
 TEST(LoopStop, OfCategoryOneReleasesTheDriveAtRestAndOnce) {
   Cell cell;
   const auto job = cell.loop->run(cell.trajectory);
-  while (job->nominal_time() < 0.3) std::this_thread::yield();
+  await_that([&] { return job->nominal_time() >= 0.3; });
   job->stop(StopCategory::kRelease);
   ASSERT_TRUE(job->wait(20.0));
   EXPECT_EQ(job->state(), RunState::kStopped);
@@ -161,7 +171,7 @@ TEST(LoopStop, OfCategoryOneReleasesTheDriveAtRestAndOnce) {
 TEST(LoopStop, OfCategoryOneGoesForOneOfCategoryTwoThatIsUnderWay) {
   Cell cell;
   const auto job = cell.loop->run(cell.trajectory);
-  while (job->nominal_time() < 0.3) std::this_thread::yield();
+  await_that([&] { return job->nominal_time() >= 0.3; });
   job->stop();
   job->stop(StopCategory::kRelease);
   job->resume();
@@ -181,13 +191,13 @@ TEST(LoopCommands, StepBackAndJogInAPauseAndEndWhereTheMotionEnds) {
   }
   EXPECT_TRUE(is_boundary);
   job->backward();
-  while (job->nominal_time() > 0.0) std::this_thread::yield();
+  await_that([&] { return job->nominal_time() <= 0.0; });
   await(job, RunState::kPaused);
   EXPECT_THROW(cell.loop->jog(JointVector::Constant(2, 0.5)), MotionError)
       << "it was not paused by a wish";
   job->pause();
   cell.loop->jog(JointVector::Constant(2, 0.5));
-  while (cell.loop->jogging()) std::this_thread::yield();
+  await_that([&] { return !cell.loop->jogging(); });
   EXPECT_GT(cell.loop->position().norm(), 0.01);
   job->resume();
   ASSERT_TRUE(job->wait(60.0));

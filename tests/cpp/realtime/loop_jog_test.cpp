@@ -117,8 +117,8 @@ TEST(LoopJog, ExcludesRunsAndIsExcludedByThem) {
   EXPECT_EQ(code_of([&] { (void)loop->run(from_zero); }), ErrorCode::kNotAtStart);
   std::vector<TrajectoryPiece> pieces;
   append_straight(pieces, loop->position(), JointVector::Constant(2, 0.5), kLimits, 0);
+  loop->set_override(0.001);  // so that the run is there for as long as it is looked at
   const auto job = loop->run(std::make_shared<Trajectory>(std::move(pieces), kLimits));
-  job->pause();
   EXPECT_EQ(code_of([&] { loop->jog(JointVector{{0.5, 0.5}}); }), ErrorCode::kBusy);
   job->stop();
   ASSERT_TRUE(job->wait(20.0));

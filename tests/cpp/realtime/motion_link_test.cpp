@@ -119,8 +119,11 @@ TEST(MotionLink, EndsAtRestAndWaitsForMore) {
   Handover run(1);
   Setpoint setpoint;
   const Trajectory& whole = run.motion.trajectory;
-  while (run.interpolator.tick(setpoint) != RunState::kWaiting) {
+  constexpr int kPatience = 100'000;
+  for (int k = 0; k < kPatience && run.interpolator.state() != RunState::kWaiting; ++k) {
+    run.interpolator.tick(setpoint);
   }
+  ASSERT_EQ(run.interpolator.state(), RunState::kWaiting);
   EXPECT_EQ(setpoint.q, whole.at(whole.duration()).q);
   for (int k = 0; k < 5; ++k) {
     EXPECT_EQ(run.interpolator.tick(setpoint), RunState::kWaiting);
@@ -136,7 +139,8 @@ TEST(MotionLink, EndsAtRestAndWaitsForMore) {
   run.interpolator.close();
   Guard guard(run.motion.limits, kCycle, {}, setpoint.q);
   const JointVector goal = setpoint.q.array() + 0.1;
-  while (run.interpolator.tick(setpoint) == RunState::kRunning) {
+  for (int k = 0; k < kPatience && run.interpolator.active(); ++k) {
+    run.interpolator.tick(setpoint);
     ASSERT_EQ(guard.pass(setpoint), Guard::Verdict::kPass);
   }
   EXPECT_EQ(run.interpolator.state(), RunState::kFinished);
@@ -199,6 +203,83 @@ TEST(MotionLink, LeavesTheWayBackToAnArmThatIsAboutToGoBack) {
     EXPECT_EQ(run.interpolator.nominal_time(), 0.0);
   }
   EXPECT_GT(tried, 3);
+}
+
+/// Two straight moves, of which the second comes when the arm rests at the end of the first.
+struct TwoMoves {
+  TwoMoves() {
+    append_straight(pieces, JointVector::Zero(2), JointVector::Constant(2, 0.5), limits, 0);
+    first = Trajectory(pieces, limits);
+    append_straight(pieces, JointVector::Constant(2, 0.5), JointVector::Constant(2, 0.5), limits,
+                    1);
+    both = Trajectory(pieces, limits);
+    interpolator.begin(first, true);
+  }
+  void tick(int cycles) {
+    for (int k = 0; k < cycles; ++k) interpolator.tick(setpoint);
+  }
+  [[nodiscard]] LinkFate lengthen() {
+    return interpolator.lengthen({&both, first.duration(), 0.0, 0, true});
+  }
+
+  JointLimits limits = even_limits(2, 2.0, 20.0, 200.0);
+  std::vector<TrajectoryPiece> pieces;
+  Trajectory first, both;
+  Interpolator interpolator{limits, kCycle, JointVector::Zero(2)};
+  Setpoint setpoint;
+};
+
+TEST(MotionLink, AStepThatEndsWhereMoreIsWaitedForPausesThereWithoutAPush) {
+  TwoMoves run;
+  run.interpolator.wish(Wish::kStep);
+  run.tick(2000);
+  ASSERT_EQ(run.interpolator.state(), RunState::kWaiting)
+      << "whether the move goes on is not known";
+  ASSERT_EQ(run.lengthen(), LinkFate::kTaken);
+  for (int k = 0; k < 10; ++k) {
+    run.tick(1);
+    ASSERT_EQ(run.interpolator.state(), RunState::kPaused);
+    ASSERT_TRUE(run.setpoint.qddd.isZero(0.0)) << "cycle " << k;
+    ASSERT_TRUE(run.setpoint.q.isApproxToConstant(0.5, 1e-12));
+  }
+  run.interpolator.wish(Wish::kStep);
+  run.interpolator.close();
+  run.tick(2000);
+  EXPECT_EQ(run.interpolator.state(), RunState::kFinished);
+  EXPECT_TRUE(run.setpoint.q.isApproxToConstant(1.0, 1e-12));
+}
+
+TEST(MotionLink, IsFinishedAtItsEndWhenItIsClosedPausedOrNot) {
+  for (const bool by_override : {false, true}) {
+    TwoMoves run;
+    run.tick(2000);
+    ASSERT_EQ(run.interpolator.state(), RunState::kWaiting);
+    if (by_override) {
+      run.interpolator.set_override(0.0);
+    } else {
+      run.interpolator.wish(Wish::kPause);
+    }
+    run.tick(10);
+    ASSERT_EQ(run.interpolator.state(), RunState::kPaused);
+    run.interpolator.close();
+    run.tick(1);
+    EXPECT_EQ(run.interpolator.state(), RunState::kFinished);
+    EXPECT_FALSE(run.interpolator.active());
+  }
+}
+
+TEST(MotionLink, IsHeldBeforeItsEndByAnOverrideOfZeroAlsoWhenItIsClosed) {
+  TwoMoves run;
+  run.tick(50);
+  run.interpolator.set_override(0.0);
+  run.interpolator.close();
+  run.tick(2000);
+  ASSERT_EQ(run.interpolator.state(), RunState::kPaused);
+  run.interpolator.set_override(0.01);
+  run.tick(1);
+  EXPECT_EQ(run.interpolator.state(), RunState::kRunning);
+  run.tick(100'000);
+  EXPECT_EQ(run.interpolator.state(), RunState::kFinished);
 }
 
 TEST(MotionLink, IsRefusedWhereItsProofDoesNotHold) {

@@ -33,14 +33,19 @@ class Problem {
     for (int j = 0; j < joints; ++j) {
       limits.acceleration[j] *= uniform(0.2, 5.0);
       limits.jerk[j] *= uniform(0.2, 5.0);
-      stretch.path.first.set(j, range(limits.velocity[j]));
-      stretch.path.second.set(j, range(limits.acceleration[j]));
-      stretch.path.third.set(j, range(limits.jerk[j]));
+      DerivativeRanges& ranges = stretch.path.ranges;
+      ranges.first.set(j, range(limits.velocity[j]));
+      ranges.second.set(j, range(limits.acceleration[j]));
+      ranges.third.set(j, range(limits.jerk[j]));
+      stretch.path.first_there.set(j, part_of(ranges.first, j));
+      stretch.path.second_there.set(j, part_of(ranges.second, j));
     }
     stretch.rate.low = uniform(0.0, 1.0 - width);
     stretch.rate.high = stretch.rate.low + width * uniform(0.0, 1.0);
     stretch.slope = range(4.0);
     stretch.curvature = uniform(-80.0, 80.0);
+    stretch.begin(in(stretch.rate.low, stretch.rate.high),
+                  in(stretch.slope.low, stretch.slope.high), uniform(0.002, 0.02));
   }
 
   [[nodiscard]] double uniform(double low, double high) {
@@ -51,14 +56,20 @@ class Problem {
     return where == 0 ? low : where == 1 ? high : low + uniform(0.0, 1.0) * (high - low);
   }
   [[nodiscard]] Moment moment(int j) {
-    const auto& [first, second, third] = stretch.path;
+    const auto& [first, second, third] = stretch.path.ranges;
     return {in(first.low(j), first.high(j)),           in(second.low(j), second.high(j)),
             in(third.low(j), third.high(j)),           in(stretch.rate.low, stretch.rate.high),
             in(stretch.slope.low, stretch.slope.high), stretch.curvature};
   }
-  [[nodiscard]] double share(int j, const Moment& moment) const {
-    return std::max(std::abs(moment.acceleration()) / limits.acceleration[j],
-                    std::abs(moment.jerk()) / limits.jerk[j]);
+  /// Where the stretch begins.
+  [[nodiscard]] Moment first_moment(int j) {
+    const auto& [ranges, first, second] = stretch.path;
+    return {in(first.low(j), first.high(j)),
+            in(second.low(j), second.high(j)),
+            in(ranges.third.low(j), ranges.third.high(j)),
+            stretch.first_rate,
+            stretch.first_slope,
+            stretch.curvature};
   }
 
   JointLimits limits;
@@ -70,9 +81,47 @@ class Problem {
     const double low = uniform(-largest, largest);
     return {low, std::min(largest, low + width_ * uniform(0.0, largest))};
   }
+  Range part_of(const JointRanges& ranges, int joint) {
+    const double a = in(ranges.low(joint), ranges.high(joint));
+    const double b = in(ranges.low(joint), ranges.high(joint));
+    return {std::min(a, b), std::max(a, b)};
+  }
 
   std::mt19937 random_;
   double width_;
+};
+
+/// The worst shares of one joint's limits that come up in a stretch. Its acceleration is what the
+/// path's derivatives and the rate make of it, and also what it is at the start plus what the jerk
+/// adds to that: of a real motion the same, of ranges each a bound, so that one of them is enough.
+class Worst {
+ public:
+  Worst(const Problem& problem, int joint)
+      : acceleration_limit_(problem.limits.acceleration[joint]),
+        jerk_limit_(problem.limits.jerk[joint]),
+        time_(problem.stretch.time) {}
+
+  void see(const Moment& first, const Moment& moment, double share_of_time) {
+    const double drift = time_ * share_of_time * moment.jerk();
+    by_values_ = std::max(by_values_, std::abs(moment.acceleration()));
+    by_drift_ = std::max(
+        {by_drift_, std::abs(first.acceleration()), std::abs(first.acceleration() + drift)});
+    jerk_ = std::max(jerk_, std::abs(moment.jerk()));
+  }
+  [[nodiscard]] double share() const {
+    return std::max(std::min(by_values_, by_drift_) / acceleration_limit_, jerk_ / jerk_limit_);
+  }
+  /// Whether a limit is just reached, by either reckoning.
+  [[nodiscard]] bool reaches_a_limit() const {
+    constexpr double kNear = 1e-6;
+    return std::abs(by_values_ - acceleration_limit_) < kNear * acceleration_limit_ ||
+           std::abs(by_drift_ - acceleration_limit_) < kNear * acceleration_limit_ ||
+           std::abs(jerk_ - jerk_limit_) < kNear * jerk_limit_;
+  }
+
+ private:
+  double acceleration_limit_, jerk_limit_, time_;
+  double by_values_ = 0.0, by_drift_ = 0.0, jerk_ = 0.0;
 };
 
 TEST(RateLimits, WhatIsKeptForRangesIsKeptForEveryMoment) {
@@ -86,9 +135,11 @@ TEST(RateLimits, WhatIsKeptForRangesIsKeptForEveryMoment) {
     }
     ++kept;
     for (int j = 0; j < problem.joints; ++j) {
+      Worst worst(problem, j);
       for (int s = 0; s < 50; ++s) {
-        ASSERT_LE(problem.share(j, problem.moment(j)), 1.0 + 2e-9) << "joint " << j;
+        worst.see(problem.first_moment(j), problem.moment(j), problem.in(0.0, 1.0));
       }
+      ASSERT_LE(worst.share(), 1.0 + 2e-9) << "joint " << j;
     }
   }
   EXPECT_GT(kept, 200);
@@ -102,7 +153,9 @@ TEST(RateLimits, OfSingleValuesItRefusesOnlyWhatBreaksALimit) {
     Problem problem(seed, 0.0);
     double worst = 0.0;
     for (int j = 0; j < problem.joints; ++j) {
-      worst = std::max(worst, problem.share(j, problem.moment(j)));
+      Worst of_joint(problem, j);
+      of_joint.see(problem.first_moment(j), problem.moment(j), 1.0);
+      worst = std::max(worst, of_joint.share());
     }
     const bool answer = RateLimits(problem.limits).kept(problem.stretch);
     ++(answer ? kept : refused);
@@ -130,12 +183,16 @@ TEST(RateLimits, KeepNothingThatIsNotFinite) {
       };
       for (int j = 0; j < problem.joints; ++j) {
         const auto pair = static_cast<std::size_t>(j / 2);
-        plant([&](RateStretch& s) -> double& { return s.path.first.pair[pair].low[j % 2]; });
-        plant([&](RateStretch& s) -> double& { return s.path.first.pair[pair].high[j % 2]; });
-        plant([&](RateStretch& s) -> double& { return s.path.second.pair[pair].low[j % 2]; });
-        plant([&](RateStretch& s) -> double& { return s.path.second.pair[pair].high[j % 2]; });
-        plant([&](RateStretch& s) -> double& { return s.path.third.pair[pair].low[j % 2]; });
-        plant([&](RateStretch& s) -> double& { return s.path.third.pair[pair].high[j % 2]; });
+        plant([&](RateStretch& s) -> double& { return s.path.ranges.first.pair[pair].low[j % 2]; });
+        plant(
+            [&](RateStretch& s) -> double& { return s.path.ranges.first.pair[pair].high[j % 2]; });
+        plant(
+            [&](RateStretch& s) -> double& { return s.path.ranges.second.pair[pair].low[j % 2]; });
+        plant(
+            [&](RateStretch& s) -> double& { return s.path.ranges.second.pair[pair].high[j % 2]; });
+        plant([&](RateStretch& s) -> double& { return s.path.ranges.third.pair[pair].low[j % 2]; });
+        plant(
+            [&](RateStretch& s) -> double& { return s.path.ranges.third.pair[pair].high[j % 2]; });
       }
       plant([](RateStretch& s) -> double& { return s.rate.low; });
       plant([](RateStretch& s) -> double& { return s.rate.high; });
@@ -146,18 +203,30 @@ TEST(RateLimits, KeepNothingThatIsNotFinite) {
   }
 }
 
-/// The largest share over all joints at the start and, a `time` later, at the end of a push.
-double worst_of_push(Problem& problem, double time, double curvature) {
-  double worst = 0.0;
-  for (int j = 0; j < problem.joints; ++j) {
-    Moment moment = problem.moment(j);
-    moment.slope = problem.stretch.slope.low;
-    moment.curvature = curvature;
-    worst = std::max(worst, std::abs(moment.jerk()) / problem.limits.jerk[j]);
-    moment.slope += time * curvature;
-    worst = std::max(worst, problem.share(j, moment));
+/// What comes up in one joint at the start and at the end of a push.
+Worst worst_of_push(Problem& problem, int joint, double curvature, int samples) {
+  Worst worst(problem, joint);
+  for (int s = 0; s < samples; ++s) {
+    const Moment first = problem.first_moment(joint);
+    for (const double time : {0.0, problem.stretch.time}) {
+      Moment moment = problem.moment(joint);
+      moment.slope = problem.stretch.first_slope + time * curvature;
+      moment.curvature = curvature;
+      worst.see(first, moment, 1.0);
+    }
   }
   return worst;
+}
+
+/// Asserts that a push keeps all limits, and reaches one.
+void expect_at_a_limit(Problem& problem, double curvature) {
+  bool reaches = false;
+  for (int j = 0; j < problem.joints; ++j) {
+    const Worst worst = worst_of_push(problem, j, curvature, 1);
+    ASSERT_LE(worst.share(), 1.0 + 2e-9) << "joint " << j;
+    reaches = reaches || worst.reaches_a_limit();
+  }
+  ASSERT_TRUE(reaches) << "a stronger push would do, too";
 }
 
 TEST(RateLimits, TheStrongestPushAndAnyWeakerOneKeepTheLimits) {
@@ -165,19 +234,20 @@ TEST(RateLimits, TheStrongestPushAndAnyWeakerOneKeepTheLimits) {
   for (unsigned seed = 0; seed < kStretches; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     Problem problem(seed, 0.1);
-    const double time = problem.uniform(0.002, 0.02);
     const double wished = problem.uniform(-1e4, 1e4);
     double strongest = wished;
-    if (!RateLimits(problem.limits).strongest(problem.stretch, time, strongest)) continue;
+    if (!RateLimits(problem.limits).strongest(problem.stretch, strongest)) continue;
     ++found;
     const bool is_forced = strongest * wished < 0.0 || std::abs(strongest) > std::abs(wished);
     forced += is_forced ? 1 : 0;
     double none = 0.0;
     const bool may_rest =
-        RateLimits(problem.limits).strongest(problem.stretch, time, none) && none == 0.0;
-    for (int s = 0; s < 50; ++s) {
+        RateLimits(problem.limits).strongest(problem.stretch, none) && none == 0.0;
+    for (int s = 0; s < 10; ++s) {
       const double push = may_rest ? problem.in(0.0, strongest) : strongest;
-      ASSERT_LE(worst_of_push(problem, time, push), 1.0 + 2e-9) << "push " << push;
+      for (int j = 0; j < problem.joints; ++j) {
+        ASSERT_LE(worst_of_push(problem, j, push, 5).share(), 1.0 + 2e-9) << "push " << push;
+      }
     }
   }
   EXPECT_GT(found, 200);
@@ -189,20 +259,19 @@ TEST(RateLimits, OfSingleValuesTheStrongestPushReachesALimit) {
   for (unsigned seed = 0; seed < kStretches; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     Problem problem(seed, 0.0);
-    const double time = problem.uniform(0.002, 0.02);
     constexpr double kMost = 1e4;
     double least = 0.0;
-    if (!RateLimits(problem.limits).strongest(problem.stretch, time, least)) continue;
+    if (!RateLimits(problem.limits).strongest(problem.stretch, least)) continue;
     ++found;
     if (least != 0.0) {
       ++forced;
-      ASSERT_NEAR(worst_of_push(problem, time, least), 1.0, 1e-6);
+      ASSERT_NO_FATAL_FAILURE(expect_at_a_limit(problem, least));
     }
     for (const double wished : {kMost, -kMost}) {
       double strongest = wished;
-      ASSERT_TRUE(RateLimits(problem.limits).strongest(problem.stretch, time, strongest));
+      ASSERT_TRUE(RateLimits(problem.limits).strongest(problem.stretch, strongest));
       if (strongest == wished) continue;
-      ASSERT_NEAR(worst_of_push(problem, time, strongest), 1.0, 1e-6);
+      ASSERT_NO_FATAL_FAILURE(expect_at_a_limit(problem, strongest));
     }
   }
   EXPECT_GT(found, 200);
@@ -217,35 +286,38 @@ TEST(RateLimits, AllowNoPushWhereAnythingIsNotFinite) {
     const Problem problem(seed, 0.1);
     const RateLimits limits(problem.limits);
     double push = 100.0;
-    if (!limits.strongest(problem.stretch, 0.01, push)) continue;
+    if (!limits.strongest(problem.stretch, push)) continue;
     const auto plant = [&](auto&& where) {
       RateStretch stretch = problem.stretch;
       where(stretch) = kNan;
       double poisoned = 100.0;
-      ASSERT_FALSE(limits.strongest(stretch, 0.01, poisoned));
+      ASSERT_FALSE(limits.strongest(stretch, poisoned));
       ++planted;
     };
     for (int j = 0; j < problem.joints; ++j) {
       const auto pair = static_cast<std::size_t>(j / 2);
-      plant([&](RateStretch& s) -> double& { return s.path.first.pair[pair].low[j % 2]; });
-      plant([&](RateStretch& s) -> double& { return s.path.second.pair[pair].high[j % 2]; });
-      plant([&](RateStretch& s) -> double& { return s.path.third.pair[pair].low[j % 2]; });
+      plant([&](RateStretch& s) -> double& { return s.path.ranges.first.pair[pair].low[j % 2]; });
+      plant([&](RateStretch& s) -> double& { return s.path.ranges.second.pair[pair].high[j % 2]; });
+      plant([&](RateStretch& s) -> double& { return s.path.ranges.third.pair[pair].low[j % 2]; });
     }
     plant([](RateStretch& s) -> double& { return s.rate.high; });
-    plant([](RateStretch& s) -> double& { return s.slope.low; });
+    plant([](RateStretch& s) -> double& { return s.first_slope; });
+    plant([](RateStretch& s) -> double& { return s.first_rate; });
     double nothing = kNan;
-    ASSERT_FALSE(limits.strongest(problem.stretch, 0.01, nothing));
+    ASSERT_FALSE(limits.strongest(problem.stretch, nothing));
   }
 }
 
 TEST(RateLimits, LeaveAJointThatDoesNotMoveOutOfAccount) {
   const RateLimits limits(even_limits(3, 2.0, 20.0, 200.0));
   RateStretch stretch;
-  stretch.path.first.set(1, {1.0, 1.0});
+  stretch.path.ranges.first.set(1, {1.0, 1.0});
+  stretch.path.first_there.set(1, {1.0, 1.0});
   stretch.rate = {0.5, 0.5};
+  stretch.begin(0.5, 0.0, 0.01);
   for (const double wished : {1e6, -1e6}) {
     double push = wished;
-    ASSERT_TRUE(limits.strongest(stretch, 0.01, push));
+    ASSERT_TRUE(limits.strongest(stretch, push));
     EXPECT_NEAR(push, std::copysign(200.0, wished), 1e-6);
   }
 }

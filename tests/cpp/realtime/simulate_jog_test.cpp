@@ -88,6 +88,8 @@ TEST(SimulateJog, NamesWhatCannotBe) {
   };
   EXPECT_EQ(code_of(rest, 0.0, 2.1, kCycle), ErrorCode::kVelocityLimit);
   EXPECT_EQ(code_of(rest, 0.0, NAN, kCycle), ErrorCode::kBadArgument);
+  // A nanosecond would ask for 16 GB.
+  EXPECT_EQ(code_of(rest, 0.0, 0.1, std::chrono::nanoseconds(1)), ErrorCode::kBadArgument);
   EXPECT_EQ(code_of(rest, -1.0, 1.0, kCycle), ErrorCode::kBadArgument);
   EXPECT_EQ(code_of(rest, 1e9, 1.0, kCycle), ErrorCode::kBadArgument);
   EXPECT_EQ(code_of(rest, 0.0, 1.0, std::chrono::nanoseconds(0)), ErrorCode::kBadArgument);

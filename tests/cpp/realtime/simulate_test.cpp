@@ -87,10 +87,9 @@ TEST(Simulate, RefusesBadCommandsAndCycles) {
   EXPECT_THROW(static_cast<void>(simulate(Trajectory(), motion.limits, {}, kCycle)), MotionError);
 }
 
-/// What a run that would not end says, and how long it took to say so.
+/// What a run that is refused says.
 std::string refusal(const Motion& motion, std::vector<TimedCommand> commands,
                     std::chrono::nanoseconds cycle) {
-  const auto begin = std::chrono::steady_clock::now();
   std::string message = "no error";
   try {
     static_cast<void>(simulate(motion.trajectory, motion.limits, std::move(commands), cycle));
@@ -98,8 +97,6 @@ std::string refusal(const Motion& motion, std::vector<TimedCommand> commands,
     EXPECT_EQ(error.code(), ErrorCode::kBadArgument);
     message = error.what();
   }
-  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(1))
-      << "the log was filled before";
   return message;
 }
 
@@ -110,23 +107,27 @@ TEST(Simulate, TellsAnOverrideJustAboveItsBoundApartFromIt) {
 }
 
 TEST(Simulate, RefusesRunsLongerThanItsLogBeforeItFillsIt) {
-  using testing::HasSubstr;
+  using testing::AllOf, testing::HasSubstr, testing::Not;
   const Motion motion = motion_of(6);
-  const auto limit = HasSubstr("at most 2000000 fit");
+  // Filled to its end the log would say that a cycle more is needed; what is foreseen is more.
+  const auto limit = AllOf(HasSubstr("at most 2000000 fit"), Not(HasSubstr("at least 2e+06 ")),
+                           Not(HasSubstr("at least 2000001 ")));
   EXPECT_THAT(refusal(motion, {{0.0, Kind::kOverride, 1e-6}}, kCycle), limit);
   EXPECT_THAT(refusal(motion, {{0.05, Kind::kOverride, 1e-6}}, kCycle), limit);
-  EXPECT_THAT(refusal(motion, {{0.05, Kind::kOverride, 1e-300}}, kCycle), limit);
   EXPECT_THAT(refusal(motion, {{0.05, Kind::kPause, 0.0}, {1e5, Kind::kResume, 0.0}}, kCycle),
               limit);
-  EXPECT_THAT(refusal(motion, {{0.05, Kind::kOverride, 1e-9}, {1e5, Kind::kOverride, 1.0}}, kCycle),
+  EXPECT_THAT(refusal(motion, {{0.05, Kind::kOverride, 2e-6}, {1e5, Kind::kOverride, 1.0}}, kCycle),
               limit);
-  EXPECT_THAT(refusal(motion, {}, std::chrono::nanoseconds(10)), limit);
+  EXPECT_THAT(refusal(motion, {{0.05, Kind::kPause, 0.0}, {3.0, Kind::kResume, 0.0}},
+                      std::chrono::microseconds(1)),
+              limit);
+  EXPECT_THAT(refusal(motion, {}, std::chrono::nanoseconds(10)), HasSubstr("at least 1000 ns"));
 }
 
 TEST(Simulate, ASlowRunThatIsMadeQuickerInTimeIsRun) {
   const Motion motion = motion_of(6);
   const auto log = simulate(motion.trajectory, motion.limits,
-                            {{0.05, Kind::kOverride, 1e-9},
+                            {{0.05, Kind::kOverride, 2e-6},
                              {5.0, Kind::kPause, 0.0},
                              {9.0, Kind::kOverride, 1.0},
                              {9.0, Kind::kResume, 0.0}},

@@ -306,6 +306,31 @@ TEST(ArmHost, TheNextOperatorEnablesTheDriveAgain) {
   EXPECT_TRUE(host.job(run(host, bob, move(0.5, here)))->wait(60.0));
 }
 
+TEST(ArmHost, KeepsNobodyWaitingWhileADriveIsEnabledForAnother) {
+  std::atomic<bool> is_weak{false}, may_go_on{true}, is_enabling{false};
+  ArmHost host(
+      kLimits,
+      [&](const JointVector& rest) {
+        is_enabling = true;
+        EXPECT_TRUE(await([&] { return may_go_on.load(); }));
+        const JointVector start = rest.size() == 0 ? JointVector(JointVector::Zero(2)) : rest;
+        return std::make_unique<ControllerLoop>(std::make_unique<WeakDrive>(is_weak, start),
+                                                kLimits);
+      },
+      seconds(60));
+  is_weak = true;
+  ASSERT_TRUE(await([&] { return !host.status().fault.empty(); }));
+  is_weak = false;
+  is_enabling = may_go_on = false;
+  std::jthread alice([&] { (void)host.take_control("alice"); });
+  ASSERT_TRUE(await([&] { return is_enabling.load(); }));
+  EXPECT_THROW((void)host.take_control("bob"), NotInControl);
+  EXPECT_EQ(host.status().operator_name, "");
+  may_go_on = true;
+  alice.join();
+  EXPECT_EQ(host.status().operator_name, "alice");
+}
+
 TEST(ArmHost, AReleasedDriveIsEnabledForTheNextOperator) {
   ArmHost host(kLimits, simulated(), seconds(60));
   const std::string alice = host.take_control("alice");

@@ -17,44 +17,30 @@ struct Handed {
   std::vector<std::pair<double, Trajectory>> chunks;  ///< with when the one before is left
 };
 
-class Recorder final : public OpenJob {
+class Recorder final : public Follower {
  public:
-  Recorder(std::shared_ptr<OpenJob> job, Handed& handed) : job_(std::move(job)), handed_(handed) {}
-  bool wait(double timeout) override { return job_->wait(timeout); }
-  void pause() override { job_->pause(); }
-  void resume() override { job_->resume(); }
-  void step() override { job_->step(); }
-  void backward() override { job_->backward(); }
-  void stop(StopCategory category) override { job_->stop(category); }
-  void on_input(const InputReaction& reaction) override { job_->on_input(reaction); }
-  [[nodiscard]] RunState state() const override { return job_->state(); }
-  [[nodiscard]] std::optional<InputWait> awaited() const override { return job_->awaited(); }
-  [[nodiscard]] double nominal_time() const override { return job_->nominal_time(); }
-  [[nodiscard]] double duration() const override { return job_->duration(); }
-  [[nodiscard]] std::uint64_t overruns() const override { return job_->overruns(); }
-  [[nodiscard]] int move() const override { return job_->move(); }
-  [[nodiscard]] std::vector<LogRecord> log() const override { return job_->log(); }
-  [[nodiscard]] std::vector<LogRecord> log(std::uint64_t from, std::size_t count) const override {
-    return job_->log(from, count);
-  }
-  [[nodiscard]] RunReport report() const override { return job_->report(); }
+  Recorder(std::shared_ptr<Follower> run, Handed& handed) : run_(std::move(run)), handed_(handed) {}
+  [[nodiscard]] RunState state() const override { return run_->state(); }
+  [[nodiscard]] double nominal_time() const override { return run_->nominal_time(); }
+  [[nodiscard]] double duration() const override { return run_->duration(); }
+  [[nodiscard]] int move() const override { return run_->move(); }
   void lengthen(std::shared_ptr<const Trajectory> next, double leave) override {
     offered_ = {leave, *next};
-    job_->lengthen(std::move(next), leave);
+    run_->lengthen(std::move(next), leave);
   }
   [[nodiscard]] LinkFate fate() override {
-    const LinkFate fate = job_->fate();
+    const LinkFate fate = run_->fate();
     if (fate == LinkFate::kTaken && offered_.second.joints() > 0) {
       handed_.chunks.push_back(std::exchange(offered_, {}));
     }
     return fate;
   }
-  void close() override { job_->close(); }
-  [[nodiscard]] double earliest_leave() const override { return job_->earliest_leave(); }
-  [[nodiscard]] std::uint64_t waited_cycles() const override { return job_->waited_cycles(); }
+  void close() override { run_->close(); }
+  [[nodiscard]] double earliest_leave() const override { return run_->earliest_leave(); }
+  [[nodiscard]] std::uint64_t waited_cycles() const override { return run_->waited_cycles(); }
 
  private:
-  std::shared_ptr<OpenJob> job_;
+  std::shared_ptr<Follower> run_;
   Handed& handed_;
   std::pair<double, Trajectory> offered_;
 };

@@ -10,6 +10,7 @@
 #include <memory>
 #include <random>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "planning/planner_fixture.hpp"
@@ -64,7 +65,8 @@ struct Cell {
         arm_robot, beginning,
         [this](std::shared_ptr<const Trajectory> first) {
           handed.chunks.emplace_back(0.0, *first);
-          return std::make_shared<Recorder>(loop.follow(std::move(first)), handed);
+          job = loop.follow(std::move(first));
+          return std::make_shared<Recorder>(job, handed);
         },
         margin);
   }
@@ -80,10 +82,7 @@ struct Cell {
       stream->hand_over();
     }
   }
-  [[nodiscard]] bool ended() const {
-    const auto& job = stream->job();
-    return job != nullptr && !loop.busy();
-  }
+  [[nodiscard]] bool ended() const { return job != nullptr && !loop.busy(); }
   void finish() {
     stream->end();
     for (int k = 0; k < 1'000'000 && !ended(); ++k) pass(1);
@@ -97,6 +96,7 @@ struct Cell {
   MotionProgram program;
   VirtualLoop loop;
   Handed handed;
+  std::shared_ptr<OpenJob> job;  ///< once it has begun
   std::unique_ptr<MotionStream> stream;
 };
 
@@ -126,7 +126,7 @@ TEST(MotionStream, RunsExactlyWhatItWasHanded) {
     Cell cell(some_moves(*robot("puma560"), 30, random));
     for (const Step& step : cell.program.steps) cell.tell(step, 16);
     cell.finish();
-    const auto& job = cell.stream->job();
+    const auto& job = cell.job;
     ASSERT_EQ(job->state(), RunState::kFinished) << cell.loop.fault();
     const std::vector<LogRecord> log = job->log();
     EXPECT_LE(off_chunks(log, cell.handed), 1e-12);
@@ -149,15 +149,15 @@ TEST(MotionStream, RestsOnThePathForAStepThatComesLateAndSaysWhich) {
     cell.tell(step, 100);
     if (step.source.line != 3) continue;
     cell.pass(5'000);  // the script thinks, until the arm rests
-    ASSERT_EQ(cell.stream->job()->state(), RunState::kWaiting);
+    ASSERT_EQ(cell.job->state(), RunState::kWaiting);
   }
   cell.finish();
-  ASSERT_EQ(cell.stream->job()->state(), RunState::kFinished) << cell.loop.fault();
+  ASSERT_EQ(cell.job->state(), RunState::kFinished) << cell.loop.fault();
   ASSERT_EQ(cell.stream->late_count(), 1U);
   EXPECT_EQ(cell.stream->late().front().source.line, 4);
   EXPECT_EQ(cell.stream->late().front().step, 3);
   EXPECT_GT(cell.stream->late().front().waited_cycles, 0U);
-  const std::vector<LogRecord> log = cell.stream->job()->log();
+  const std::vector<LogRecord> log = cell.job->log();
   EXPECT_LE(off_chunks(log, cell.handed), 1e-12);
   EXPECT_LE(off_path(told(cell.handed), cell.whole()), 1e-12);
   const auto waits = std::ranges::count(log, RunState::kWaiting, &LogRecord::state);
@@ -177,8 +177,8 @@ TEST(MotionStream, GoesOnFromRestWhereAChunkIsHandedOverTooLate) {
       cell.pass(static_cast<int>(random() % 150));
     }
     cell.finish();
-    ASSERT_EQ(cell.stream->job()->state(), RunState::kFinished) << cell.loop.fault();
-    const std::vector<LogRecord> log = cell.stream->job()->log();
+    ASSERT_EQ(cell.job->state(), RunState::kFinished) << cell.loop.fault();
+    const std::vector<LogRecord> log = cell.job->log();
     ASSERT_LE(off_chunks(log, cell.handed), 1e-12);
     ASSERT_TRUE(ends_at(log.back().q, whole));
     ASSERT_EQ(log.back().outputs, [&] {
@@ -202,7 +202,7 @@ TEST(MotionStream, HoldsEveryCommandWhateverComesAndWhen) {
     Cell cell(some_moves(*robot("puma560"), 25, random));
     const std::vector<TrajectoryPiece> whole = cell.whole();
     const auto disturb = [&] {
-      const auto& job = cell.stream->job();
+      const auto& job = cell.job;
       for (int k = static_cast<int>(random() % 8 == 0 ? 500 : random() % 60); k > 0; --k) {
         cell.pass(1);
         if (job == nullptr) continue;
@@ -242,13 +242,13 @@ TEST(MotionStream, HoldsEveryCommandWhateverComesAndWhen) {
     for (const Step& step : cell.program.steps) {
       disturb();
       cell.stream->add(step);
-      if (cell.stream->job() != nullptr && random() % 2 == 0) cell.stream->job()->resume();
+      if (cell.job != nullptr && random() % 2 == 0) cell.job->resume();
     }
     cell.loop.set_override(1.0);
-    cell.stream->job()->resume();
+    cell.job->resume();
     cell.finish();
-    ASSERT_EQ(cell.stream->job()->state(), RunState::kFinished) << cell.loop.fault();
-    const std::vector<LogRecord> log = cell.stream->job()->log();
+    ASSERT_EQ(cell.job->state(), RunState::kFinished) << cell.loop.fault();
+    const std::vector<LogRecord> log = cell.job->log();
     ASSERT_TRUE(ends_at(log.back().q, whole));
   }
   for (const RunState state : {RunState::kRunning, RunState::kPausing, RunState::kPaused,
@@ -257,17 +257,55 @@ TEST(MotionStream, HoldsEveryCommandWhateverComesAndWhen) {
   }
 }
 
+TEST(MotionStream, SwitchesOutputsBeforeTheEndOfTheMoveThatTheyAreToldWith) {
+  const RobotPtr puma = robot("puma560");
+  JointVector home(6);
+  home << 0.0, -0.8, 0.6, 0.0, 1.0, 0.0;
+  const Eigen::Isometry3d here = puma->forward().pose(home);
+  Eigen::Isometry3d there = here;
+  there.translation().x() -= 0.1;
+  constexpr int kMoves = 40;
+  Script script(*puma, home);
+  for (int k = 0; k < kMoves; ++k) {
+    script.add(LinMove{PoseTarget{k % 2 == 0 ? there : here}}, {});
+    script.add(SetOutput{3, k % 2 == 0, -0.02});
+  }
+  for (const int ahead : {4, 16}) {
+    SCOPED_TRACE(ahead);
+    Cell cell(script.program());
+    for (const Step& step : cell.program.steps) {
+      if (std::holds_alternative<SetOutput>(step.what)) {
+        cell.stream->add(step);
+      } else {
+        cell.tell(step, ahead);
+      }
+    }
+    cell.finish();
+    int changes = 0;
+    const std::vector<LogRecord> log = cell.job->log();
+    for (std::size_t k = 1; k < log.size(); ++k) {
+      if (log[k].outputs == log[k - 1].outputs) continue;
+      const Eigen::Vector3d goal = (changes++ % 2 == 0 ? there : here).translation();
+      const double before = (puma->forward().pose(log[k - 1].q).translation() - goal).norm();
+      const double at = (puma->forward().pose(log[k].q).translation() - goal).norm();
+      EXPECT_GE(before, 0.02 - 1e-6);
+      EXPECT_LE(at, 0.02 + 1e-6);
+    }
+    EXPECT_EQ(changes, kMoves);
+  }
+}
+
 TEST(MotionStream, StopsOnThePathAndTakesNoMore) {
   std::mt19937 random(3);
   Cell cell(some_moves(*robot("puma560"), 20, random));
   for (std::size_t k = 0; k < 6; ++k) cell.tell(cell.program.steps[k], 100);
   cell.pass(50);
-  cell.stream->job()->stop(StopCategory::kHold);
+  cell.job->stop(StopCategory::kHold);
   cell.tell(cell.program.steps[6], 100);
   cell.pass(5'000);
-  EXPECT_EQ(cell.stream->job()->state(), RunState::kStopped);
+  EXPECT_EQ(cell.job->state(), RunState::kStopped);
   cell.stream->hand_over();
-  EXPECT_LE(off_chunks(cell.stream->job()->log(), cell.handed), 1e-12);
+  EXPECT_LE(off_chunks(cell.job->log(), cell.handed), 1e-12);
 }
 
 TEST(MotionStream, RunsTheStepsBeforeOneThatIsRefused) {
@@ -284,8 +322,8 @@ TEST(MotionStream, RunsTheStepsBeforeOneThatIsRefused) {
   }
   EXPECT_THROW(cell.stream->add(cell.program.steps[2]), MotionError);
   cell.finish();
-  EXPECT_EQ(cell.stream->job()->state(), RunState::kFinished);
-  EXPECT_TRUE(cell.stream->job()->log().back().q.isApprox(puma_b(), 1e-12));
+  EXPECT_EQ(cell.job->state(), RunState::kFinished);
+  EXPECT_TRUE(cell.job->log().back().q.isApprox(puma_b(), 1e-12));
 }
 
 TEST(MotionStream, MovesNothingMoreOnceTheArmHasRefusedAMotion) {
@@ -315,7 +353,7 @@ TEST(MotionStream, MovesNothingMoreOnceTheArmHasRefusedAMotion) {
   EXPECT_EQ(code_of([&] { stream.add(cell.program.steps.front()); }), ErrorCode::kBusy);
   EXPECT_EQ(code_of([&] { stream.end(); }), ErrorCode::kBusy);
   EXPECT_EQ(calls, 1);
-  EXPECT_EQ(stream.job(), nullptr);
+  EXPECT_EQ(stream.run(), nullptr);
 }
 
 TEST(MotionStream, OfNothingMovesNothing) {
@@ -323,7 +361,7 @@ TEST(MotionStream, OfNothingMovesNothing) {
   Cell cell(script.program());
   cell.stream->end();
   cell.stream->hand_over();
-  EXPECT_EQ(cell.stream->job(), nullptr);
+  EXPECT_EQ(cell.stream->run(), nullptr);
 }
 
 }  // namespace

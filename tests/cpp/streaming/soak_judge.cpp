@@ -113,9 +113,13 @@ void SoakJudge::hold_path(std::span<const Trajectory> ways) {
 /// Outputs are those of the farthest place that was reached, whatever happened on the way.
 void SoakJudge::hold_outputs(std::span<const Trajectory> ways) {
   double farthest = 0.0;
+  std::size_t farthest_way = 0;
   for (const Cycle& cycle : run_) {
     const auto& [nominal_time, way] = cycle.progress;
-    farthest = std::max(farthest, nominal_time);
+    if (nominal_time > farthest) {
+      farthest = nominal_time;
+      farthest_way = way;
+    }
     const auto after = [&](double time) {
       const OutputEffect& effect = ways[way].outputs_after(ways[way].piece_at(time));
       return (outputs_before_ & ~effect.changed) | effect.on;
@@ -123,6 +127,8 @@ void SoakJudge::hold_outputs(std::span<const Trajectory> ways) {
     const std::uint64_t expected = after(farthest);
     // Where a step ends the arm is at the next piece's beginning, but for rounding.
     if (cycle.outputs == expected || cycle.outputs == after(farthest + kEndSlack)) continue;
+    // What has been told only since the arm was at the end, and went back, waits for it there.
+    if (farthest_way != way && cycle.outputs == after(farthest - kEndSlack)) continue;
     std::ostringstream text;
     text << "the outputs were " << cycle.outputs << " and not " << expected << " at "
          << nominal_time << " s, after " << farthest << " s";

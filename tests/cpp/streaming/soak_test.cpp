@@ -142,15 +142,17 @@ class Shift {
     MotionProgram beginning = program;
     beginning.steps.clear();
     Handed handed;
+    std::shared_ptr<OpenJob> begun;
     MotionStream stream(
         robot_, beginning,
         [&](std::shared_ptr<const Trajectory> first) {
           handed.chunks.emplace_back(0.0, *first);
-          return std::make_shared<Recorder>(loop_->follow(std::move(first)), handed);
+          begun = loop_->follow(std::move(first));
+          return std::make_shared<Recorder>(begun, handed);
         },
         2 * kCycle);
     const auto pass = [&](bool press_too) {
-      Job* const job = stream.job().get();
+      Job* const job = begun.get();
       if (job != nullptr && press_too) press(*job);
       cycle(job, [&] {
         stream.hand_over();
@@ -164,11 +166,11 @@ class Shift {
     }
     stream.end();
     pass(false);
-    if (stream.job() == nullptr) return;
+    if (begun == nullptr) return;
     for (int k = 0; k < kCommanded && loop_->busy(); ++k) pass(true);
-    let_go(*stream.job());
+    let_go(*begun);
     for (int k = 0; k < kPatience && loop_->busy(); ++k) pass(false);
-    end_run(ways(handed), *stream.job());
+    end_run(ways(handed), *begun);
   }
 
   /// Whatever an operator can do in a cycle; mostly nothing.

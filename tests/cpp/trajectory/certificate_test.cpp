@@ -248,8 +248,8 @@ TEST(Certificate, RefusesPiecesThatAreNone) {
 }
 
 TEST(Certificate, TakesOverflowForABrokenLimit) {
-  const Certificate certificate = certify_one(
-      one_joint_piece(1e-200, {0, 1e200, 0, 0, 0, 0}, testing::kSmoothStep), generous());
+  const Certificate certificate =
+      certify_one(one_joint_piece(1e-20, {0, 1e280, 0, 0, 0, 0}, testing::kSmoothStep), generous());
   EXPECT_FALSE(certificate.holds());
   EXPECT_EQ(of_code(certificate, ErrorCode::kJerkLimit).size(), 1U);
 }
@@ -257,7 +257,7 @@ TEST(Certificate, TakesOverflowForABrokenLimit) {
 TEST(Certificate, TakesACoefficientThatOverflowsToNanForABrokenLimit) {
   // ∞ - ∞ in the middle of the composition, all input finite.
   const Certificate certificate = certify_one(
-      one_joint_piece(1e-110, {0, 1e300, -1e300, 0, 0, 0}, {0, 0.5, 0.5, 0, 0, 0}), generous());
+      one_joint_piece(1.0, {0, 1.5e308, -1.5e308, 0, 0, 0}, {0, 0.5, 0.5, 0, 0, 0}), generous());
   EXPECT_FALSE(of_code(certificate, ErrorCode::kJerkLimit).empty());
 }
 

@@ -124,6 +124,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"DifferingJoints", [](auto& p) { p[1].joints = 2; }, "piece 1"},
         Refusal{"NoDuration", [](auto& p) { p[1].duration = 0.0; }, "lasts 0 s"},
         Refusal{"NegativeDuration", [](auto& p) { p[1].duration = -1.0; }, "lasts -1 s"},
+        Refusal{"TinyDuration", [](auto& p) { p[0].duration = 3e-306; }, "at least 1e-30 s"},
         Refusal{"NanDuration", [](auto& p) { p[0].duration = kNan; }, "lasts nan s"},
         Refusal{"EndlessDuration",
                 [](auto& p) { p[0].duration = std::numeric_limits<double>::infinity(); },

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <cstddef>
+#include <functional>
 #include <mutex>
 #include <vector>
 
@@ -19,6 +20,10 @@ class GuidingHand {
   /// @throws MotionError(kBadArgument) for none; kBusy while the hand guides already
   /// Real-time: not. Threads: any.
   void guide(std::vector<JointVector> positions);
+  /// Waits until the loop has seen that the arm is guided, so that nothing is begun meanwhile; no
+  /// longer than the hand guides it, and a second at most. Real-time: not. Threads: any.
+  /// @param sees_it whether the loop has, as ControllerLoop::guided tells
+  void await(const std::function<bool()>& sees_it) const;
   /// Lets go of the arm in the next cycle. Real-time: safe. Threads: any.
   void let_go() noexcept { lets_go_.store(true, std::memory_order_release); }
   /// Real-time: safe. Threads: any.

@@ -46,7 +46,8 @@ struct ProcessStretch {
   double lowest_speed = 0.0;   ///< [m/s]
   /// What rules there: "rest" where the arm starts or stops in it, else the limit that holding the
   /// speed would break most, or that is used most: "velocity", "acceleration", "jerk" of a joint,
-  /// "tool acceleration", "tool angular speed" or "tool angular acceleration".
+  /// "tool acceleration", "tool angular speed" or "tool angular acceleration"; "timing" where the
+  /// tool keeps a lower speed along most of it though no limit asks for less.
   std::string limit;
   std::optional<int> joint;
 };

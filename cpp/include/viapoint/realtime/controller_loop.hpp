@@ -27,6 +27,9 @@ struct LoopOptions {
   std::chrono::nanoseconds cycle{2'000'000};
   int priority = 80;        ///< SCHED_FIFO
   bool lock_memory = true;  ///< mlockall
+  /// Keep the machine's processors out of deep sleep: /dev/cpu_dma_latency at 0. Costs power.
+  bool keep_awake = true;
+  std::optional<int> processor;  ///< that the loop's thread stays on, from 0; none: any
   /// Records that a run keeps, the newest, at least 1. These are 16 minutes of motion at 500 Hz,
   /// and then about 400 MB; rests take none.
   std::size_t log_records = 500'000;
@@ -55,10 +58,19 @@ enum class StopCategory : std::uint8_t {
   kHold = 2,     ///< the arm holds its position, under power
 };
 
-/// One motion under way. All methods from any ordinary thread.
-class Job {
+/// How far a run is. Threads: any ordinary.
+class Progress {
  public:
-  virtual ~Job() = default;
+  virtual ~Progress() = default;
+  [[nodiscard]] virtual RunState state() const = 0;
+  [[nodiscard]] virtual double nominal_time() const = 0;  ///< progress [s]
+  [[nodiscard]] virtual double duration() const = 0;      ///< nominal [s]
+  [[nodiscard]] virtual int move() const = 0;
+};
+
+/// One motion under way. All methods from any ordinary thread.
+class Job : public virtual Progress {
+ public:
   /// True when the run ended within `timeout` [s]: when the drive has measured the cycle after the
   /// last setpoint was sent. @throws MotionError(kDriveFault) on a fault; kInputTimeout where the
   /// run has ended because an input did not come in the time its program gives it
@@ -78,14 +90,10 @@ class Job {
   /// back.
   /// @throws MotionError(kBadArgument) for another input or wish
   virtual void on_input(const InputReaction& reaction) = 0;
-  [[nodiscard]] virtual RunState state() const = 0;
   /// The input for which the arm rests on its path now, if it does; the time-out to about seven
   /// digits.
   [[nodiscard]] virtual std::optional<InputWait> awaited() const = 0;
-  [[nodiscard]] virtual double nominal_time() const = 0;  ///< progress [s]
-  [[nodiscard]] virtual double duration() const = 0;      ///< nominal [s]
   [[nodiscard]] virtual std::uint64_t overruns() const = 0;
-  [[nodiscard]] virtual int move() const = 0;
   /// The cycles so far, but for rests from their third cycle on and for lost records: report()
   /// counts both. Complete after wait(). Copies the log.
   [[nodiscard]] virtual std::vector<LogRecord> log() const = 0;
@@ -95,10 +103,10 @@ class Job {
   [[nodiscard]] virtual RunReport report() const = 0;
 };
 
-/// A motion under way that gets longer while it runs. Where nothing more has come the arm rests at
-/// the end of what there is (RunState::kWaiting). Job::duration() is that end, and nominal times go
-/// on from the stream's beginning.
-class OpenJob : public Job {
+/// Takes up motion that follows on what it runs. Where nothing more has come the arm rests at the
+/// end of what there is (RunState::kWaiting). Progress::duration() is that end, and nominal times
+/// go on from the stream's beginning.
+class Follower : public virtual Progress {
  public:
   /// Hands over what follows: `next` begins where the motion handed over before is left, at `leave`
   /// [s of that one's own time], or where it rests at its end. The arm takes it up in the next
@@ -119,6 +127,9 @@ class OpenJob : public Job {
   /// How long the arm has waited for more, altogether [cycles].
   [[nodiscard]] virtual std::uint64_t waited_cycles() const = 0;
 };
+
+/// A motion under way that gets longer while it runs.
+class OpenJob : public Job, public Follower {};
 
 /// Owns the drive, the interpolator and the thread. The thread runs while the arm is connected
 /// (holding position when idle). Destruction brings a run to rest on its path first.
@@ -170,6 +181,9 @@ class ControllerLoop {
   void switch_outputs(std::uint64_t mask, std::uint64_t values);
   /// The cycle last done. Threads: any; the loop never waits for who asks.
   [[nodiscard]] LoopCycle newest_cycle() const;
+  /// What was measured from cycle number `from` on, in order, `most` cycles at most. The last 4096
+  /// are kept: those before are left out. Threads: any; the loop never waits for who asks.
+  [[nodiscard]] std::vector<ObservedCycle> observed(std::uint64_t from, std::size_t most) const;
   /// What the drive last measured.
   [[nodiscard]] Measurement measured() const;
   /// True while a hand moves the arm (DriveStatus::kGuided): the setpoint is where it is measured,
@@ -181,6 +195,9 @@ class ControllerLoop {
   /// What has failed, in one sentence; empty while nothing has. After a fault nothing moves any
   /// more, and the loop has to be built anew.
   [[nodiscard]] std::string fault() const;
+  /// For what would else be wished in vain. @throws MotionError(kDriveFault) after a fault, and
+  ///   after a stop that has released the drive
+  void require_power() const;
   /// The last cycles before the fault, at most kFaultCycles, the oldest first; empty while nothing
   /// has failed.
   [[nodiscard]] std::vector<LogRecord> fault_cycles() const;

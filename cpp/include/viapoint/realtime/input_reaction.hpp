@@ -2,6 +2,7 @@
 /// What a run does when the world answers.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 
@@ -24,5 +25,9 @@ struct InputReaction {
   }
 };
 static_assert(std::atomic<InputReaction>::is_always_lock_free);
+
+/// What a reaction may wish, in the order in which those of one cycle are acted on: the safer ones
+/// last, so that they count. What an operator wishes in that cycle comes after the first.
+inline constexpr std::array kReactions = {Wish::kRun, Wish::kPause, Wish::kStop};
 
 }  // namespace viapoint

@@ -52,7 +52,7 @@ enum class Wish : std::uint8_t {
 /// moves, and where it does not, at rest as soon after it as can be.
 ///
 /// An open motion may get longer while it runs (lengthen()). At its end the arm waits, at rest,
-/// until more comes or the motion is closed.
+/// until more comes or the motion is closed; closed it is finished there, paused or not.
 ///
 /// While paused the arm may be jogged away. To go on it first returns, in a straight line in joint
 /// space (PathReturn), to where it left the path.
@@ -80,6 +80,8 @@ class Interpolator {
   void set_outputs(std::uint64_t outputs) noexcept VIAPOINT_NONBLOCKING { outputs_ = outputs; }
   /// Share of the planned speed, clamped to [0, 1]; 0 acts as a pause. Kept between motions.
   void set_override(double share) noexcept VIAPOINT_NONBLOCKING;
+  /// What is less counts as 0: so slow a motion would never come to rest in doubles.
+  static constexpr double kLeastOverride = 1e-6;
   /// Inputs as measured last, bit i for input i: what the motion waits for. Kept between motions.
   void set_inputs(std::uint64_t inputs) noexcept VIAPOINT_NONBLOCKING { inputs_ = inputs; }
   /// A stop is final for its motion; each kStep is one step more.

@@ -60,6 +60,12 @@ struct DerivativeRanges {
   JointRanges first, second, third;
 };
 
+/// The same, and the narrower ones of the first two where the stretch begins.
+struct PathStretch {
+  DerivativeRanges ranges;
+  JointRanges first_there, second_there;
+};
+
 /// Which way along a motion.
 enum class Direction : std::uint8_t { kForward, kBackward };
 
@@ -71,7 +77,8 @@ enum class Direction : std::uint8_t { kForward, kBackward };
 /// Taylor expansion about the middle, and from the values at the ends of each half that bounds
 /// d³q/dτ³, which bounds d²q/dτ², which bounds dq/dτ (Lipschitz). All are clipped to the joint's
 /// limits, which the motion's certificate proves up to its slack, so that no bound takes away room
-/// at a limit that is reached.
+/// at a limit that is reached. Of a part of a cell that lies within one piece they are narrower:
+/// what dq/dτ and d²q/dτ² are at its beginning, and d³q/dτ³ changes from there.
 class Lookahead {
  public:
   /// @param cell width of a cell [s of nominal time]. Allocates. @pre limits valid, cell > 0
@@ -94,13 +101,26 @@ class Lookahead {
   /// Ranges over [from, to] [s]; false where that is not known yet. After the end of the
   /// trajectory the arm rests. Real-time: safe.
   [[nodiscard]] bool ranges(double from, double to,
-                            DerivativeRanges& out) const noexcept VIAPOINT_NONBLOCKING;
+                            PathStretch& out) const noexcept VIAPOINT_NONBLOCKING;
 
   [[nodiscard]] int joints() const noexcept { return joints_; }
   /// Cells that the window holds.
   static constexpr int kCells = 256;
 
  private:
+  /// Of one pair of joints, as PathStretch has them.
+  struct PairStretch {
+    PairRange first, second, third, first_there, second_there;
+  };
+  struct Cell {
+    DerivativeRanges ranges;
+    /// Within one piece; then dq/dτ and d²q/dτ² at the cell's beginning.
+    bool is_smooth = false;
+    std::array<Eigen::Array2d, kMaxJoints / 2> first, second;
+
+    [[nodiscard]] PairStretch between(std::size_t p, double from, double to) const noexcept;
+  };
+
   [[nodiscard]] std::size_t index_of(std::size_t piece) const noexcept VIAPOINT_NONBLOCKING;
   [[nodiscard]] double start_of(std::size_t piece) const noexcept VIAPOINT_NONBLOCKING;
   [[nodiscard]] std::int64_t cell_of(double tau) const noexcept VIAPOINT_NONBLOCKING;
@@ -108,7 +128,7 @@ class Lookahead {
   void begin_cell() noexcept VIAPOINT_NONBLOCKING;
   [[nodiscard]] bool end_cell(int& pieces) noexcept VIAPOINT_NONBLOCKING;
   void add_piece(const TrajectoryPiece& piece, double from, double to,
-                 DerivativeRanges& cell) const noexcept VIAPOINT_NONBLOCKING;
+                 Cell& cell) const noexcept VIAPOINT_NONBLOCKING;
   void add_rest(DerivativeRanges& cell) const noexcept VIAPOINT_NONBLOCKING;
 
   int joints_;
@@ -117,12 +137,12 @@ class Lookahead {
   double width_;
   const Trajectory* trajectory_ = nullptr;
   Direction direction_ = Direction::kForward;
-  double origin_ = 0.0;                  ///< of the trajectory's time on that of the cells [s]
-  std::size_t piece_ = 0;                ///< next to look at, counted along the way
-  bool begun_ = false;                   ///< cell `end_` holds some of its pieces
-  std::int64_t first_ = 0;               ///< first cell still held
-  std::int64_t end_ = 0;                 ///< first cell not computed yet
-  std::vector<DerivativeRanges> cells_;  ///< ring, kCells long
+  double origin_ = 0.0;      ///< of the trajectory's time on that of the cells [s]
+  std::size_t piece_ = 0;    ///< next to look at, counted along the way
+  bool begun_ = false;       ///< cell `end_` holds some of its pieces
+  std::int64_t first_ = 0;   ///< first cell still held
+  std::int64_t end_ = 0;     ///< first cell not computed yet
+  std::vector<Cell> cells_;  ///< ring, kCells long
 };
 
 }  // namespace viapoint

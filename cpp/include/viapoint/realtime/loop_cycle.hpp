@@ -21,4 +21,12 @@ struct LoopCycle {
   Measurement measurement;
 };
 
+/// What was measured in one cycle.
+struct ObservedCycle {
+  std::uint64_t cycle = 0;                ///< since the loop began, from 1
+  std::int64_t stamp = 0;                 ///< clock at wake-up [ns]
+  JointVector q;                          ///< measured, (n,) [rad or m]
+  std::uint64_t inputs = 0, outputs = 0;  ///< bit i is input or output i
+};
+
 }  // namespace viapoint

@@ -43,8 +43,8 @@ struct QueuedMotion {
 
   std::atomic<NumberedWish> wish{};              ///< written by ordinary threads
   std::atomic<const MotionLink*> link{nullptr};  ///< by them; emptied by the tick
-  /// A place for each wish there is: written by them, emptied by the tick when it has wished.
-  std::array<std::atomic<InputReaction>, 3> reactions{};
+  /// A place for each of kReactions: written by them, emptied by the tick when it has wished.
+  std::array<std::atomic<InputReaction>, kReactions.size()> reactions{};
   std::atomic<bool> closed{false};  ///< by them: an open motion gets no longer
 
   std::atomic<RunState> state{RunState::kRunning};  ///< the rest is written by the tick

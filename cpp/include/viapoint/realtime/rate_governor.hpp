@@ -13,10 +13,10 @@
 /// commits to push and way back together, and where it finds no better push it follows the way back
 /// it has. A proven continuation exists at every moment, whatever is commanded. The way back also
 /// tells the rate it ends at, so the push that makes it end exactly at the wanted rate is found by
-/// the same search. What is kept are the joints' own limits: a planned tool speed is never exceeded
-/// either (ρ <= 1), a planned tool acceleration or a move's scale may be while the rate changes.
-/// (The look-ahead of Dahl & Nielsen 1990 and its followers, which scale the path speed on-line,
-/// with a proof in place of a guess, and for the jerk.)
+/// the same search (PushSearch). What is kept are the joints' own limits: a planned tool speed is
+/// never exceeded either (ρ <= 1), a planned tool acceleration or a move's scale may be while the
+/// rate changes. (The look-ahead of Dahl & Nielsen 1990 and its followers, which scale the path
+/// speed on-line, with a proof in place of a guess, and for the jerk.)
 #pragma once
 
 #include <algorithm>
@@ -25,6 +25,7 @@
 #include "viapoint/core/joint_limits.hpp"
 #include "viapoint/core/nonblocking.hpp"
 #include "viapoint/realtime/lookahead.hpp"
+#include "viapoint/realtime/push_search.hpp"
 #include "viapoint/realtime/rate_limits.hpp"
 
 namespace viapoint {
@@ -68,9 +69,10 @@ class RateGovernor {
   [[nodiscard]] RateState advance(const RateState& now) noexcept VIAPOINT_NONBLOCKING;
 
  private:
-  /// Steps that a way back may have, and all the trials of a cycle together: what bounds the tick.
-  static constexpr int kSteps = 40;
-  static constexpr int kStepsACycle = 48;
+  /// Steps that a way back may have, and stretches that all the trials of a cycle may look at
+  /// together: what bounds the tick. One whole way back is always within it.
+  static constexpr int kSteps = 26;
+  static constexpr int kStretchesACycle = kSteps + 2;
   struct Step {
     double curvature = 0.0;
     int cycles = 0;
@@ -92,13 +94,15 @@ class RateGovernor {
   void improve(const RateState& now, double target,
                const Lookahead& lookahead) noexcept VIAPOINT_NONBLOCKING;
   [[nodiscard]] bool strongest_push(const RateState& now, double wanted, const Lookahead& lookahead,
-                                    double& push) const noexcept VIAPOINT_NONBLOCKING;
-  [[nodiscard]] Outcome prove(RateState state, double push, const Lookahead& lookahead, Plan& plan,
-                              int& budget) const noexcept VIAPOINT_NONBLOCKING;
-  [[nodiscard]] bool step_back(RateState& state, const Lookahead& lookahead,
-                               Plan& plan) const noexcept VIAPOINT_NONBLOCKING;
+                                    double& push) noexcept VIAPOINT_NONBLOCKING;
+  /// Fills in trial_. @param left stretches that may be looked at still
+  [[nodiscard]] Outcome prove(RateState state, double push, const Lookahead& lookahead,
+                              int& left) noexcept VIAPOINT_NONBLOCKING;
+  [[nodiscard]] bool step_back(RateState& state,
+                               const Lookahead& lookahead) noexcept VIAPOINT_NONBLOCKING;
+  /// Short at first, where the next cycles will follow it; long where it only has to be there.
   [[nodiscard]] int longest_step(int step) const noexcept {
-    return stride_ << std::min(2, step / 8);
+    return stride_ << std::min(3, step / 6);
   }
 
   RateLimits limits_;
@@ -107,10 +111,10 @@ class RateGovernor {
   double max_slope_;  ///< |α| where the joints would allow more [1/s]
   double max_curvature_;
   double wanted_ = 1.0;
-  double gain_ = 0.0;   ///< by how much the last cycle's push has brought the end rate nearer
-  double share_ = 1.0;  ///< of the strongest push, to begin with
+  PushSearch::Memory memory_;
   Plan plan_;
   Plan trial_;
+  RateStretch stretch_;  ///< a member, so that it is not cleared for every one that is looked at
 };
 
 }  // namespace viapoint

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "viapoint/realtime/controller_loop.hpp"
 
@@ -35,12 +36,16 @@ class VirtualLoop {
   [[nodiscard]] std::string jog_block() const;
   void set_override(double share);
   [[nodiscard]] double override_share() const;
+  void switch_outputs(std::uint64_t mask, std::uint64_t values);
   [[nodiscard]] Measurement measured() const;
   [[nodiscard]] LoopCycle newest_cycle() const;
+  [[nodiscard]] std::vector<ObservedCycle> observed(std::uint64_t from, std::size_t most) const;
   [[nodiscard]] bool guided() const;
   [[nodiscard]] bool busy() const;
   [[nodiscard]] JointVector position() const;
   [[nodiscard]] std::string fault() const;
+  void require_power() const;
+  [[nodiscard]] std::vector<LogRecord> fault_cycles() const;
 
  private:
   std::unique_ptr<RunDesk> desk_;

@@ -27,7 +27,9 @@ struct HostStatus {
   std::uint64_t inputs = 0;   ///< measured in that cycle, bit i is input i
   std::uint64_t outputs = 0;  ///< told in that cycle, bit i is output i
   double override_share = 1.0;
+  std::uint64_t cycle = 0;  ///< number of that cycle, as ControllerLoop::observed counts
   bool busy = false, jogging = false;
+  bool guided = false;    ///< as ControllerLoop::guided
   std::string jog_block;  ///< as ControllerLoop::jog_block
   std::string fault;      ///< as ControllerLoop::fault
   std::vector<std::string> shortcomings;
@@ -53,18 +55,22 @@ class ArmHost {
   /// Told of every run as it begins, its number and the run; it has to be quick.
   using OnRun = std::function<void(std::uint64_t number, const std::shared_ptr<Job>& job)>;
 
+  /// Told when nobody has control any more; it has to be quick, and asks nothing of the host.
+  using OnLoss = std::function<void()>;
+
   /// @param heartbeat an operator has to be heard of within it [> 0]: what moves has begun to stop
   ///        when so much time has passed since the last beat
   /// @throws what `make_loop` throws
   ArmHost(const JointLimits& limits, MakeLoop make_loop, std::chrono::nanoseconds heartbeat,
-          OnRun on_run = {});
+          OnRun on_run = {}, OnLoss on_loss = {});
   /// As shut_down().
   ~ArmHost();
   ArmHost(const ArmHost&) = delete;
   ArmHost& operator=(const ArmHost&) = delete;
 
   /// Takes control, and returns the token that commands carry. After a fault or a release the
-  /// drive is enabled anew. @throws NotInControl when another has it; kDriveFault
+  /// drive is enabled anew. @throws NotInControl when another has it, or is just taking it;
+  /// kDriveFault
   [[nodiscard]] std::string take_control(const std::string& name);
   /// @throws NotInControl, as all that follow with a token
   void beat(const std::string& token);
@@ -83,10 +89,10 @@ class ArmHost {
   /// beginning. When its operator is lost the run takes nothing more: it can be resumed to the end
   /// of what there is.
   [[nodiscard]] std::uint64_t follow(const std::string& token);
-  /// Proves the motion collected, and hands it over as OpenJob::lengthen.
+  /// Proves the motion collected, and hands it over as Follower::lengthen.
   /// @throws MotionError(kBadArgument) for a run that is not kept, or that follow() did not begin
   void lengthen(const std::string& token, std::uint64_t run, double leave);
-  /// As OpenJob::close. @throws MotionError as lengthen()
+  /// As Follower::close. @throws MotionError as lengthen()
   void close(const std::string& token, std::uint64_t run);
   /// @throws MotionError as lengthen()
   [[nodiscard]] HandOver hand_over(const std::string& token, std::uint64_t run);
@@ -96,6 +102,9 @@ class ArmHost {
   void on_input(const std::string& token, std::uint64_t run, const InputReaction& reaction);
   /// Nothing but whether the token has control.
   void require_control(const std::string& token) const;
+  /// The same, and whether the drive has power. @throws MotionError of
+  ///   ControllerLoop::require_power
+  void require_power(const std::string& token) const;
   /// @throws MotionError of ControllerLoop::set_override
   void set_override(const std::string& token, double share);
   /// @throws MotionError of ControllerLoop::jog
@@ -108,8 +117,13 @@ class ArmHost {
   /// As ControllerLoop::switch_outputs.
   void switch_outputs(std::uint64_t mask, std::uint64_t values);
   [[nodiscard]] LoopCycle newest_cycle() const;
+  /// As ControllerLoop::observed; empty while the loop is built anew, whose cycles count from 1.
+  [[nodiscard]] std::vector<ObservedCycle> observed(std::uint64_t from, std::size_t most) const;
 
   [[nodiscard]] HostStatus status() const;
+  /// The last cycles before the newest fault, as ControllerLoop::fault_cycles, also when the drive
+  /// is enabled anew; empty: nothing has failed.
+  [[nodiscard]] std::vector<LogRecord> fault_cycles() const;
   /// A run and its log; the newest kRunsKept are kept.
   /// @throws MotionError(kBadArgument) for another number
   [[nodiscard]] std::shared_ptr<Job> job(std::uint64_t run) const;

@@ -7,7 +7,7 @@
 
 namespace viapoint {
 
-/// What whoever lengthens a run has to know of it (OpenJob).
+/// What whoever lengthens a run has to know of it (Follower).
 struct HandOver {
   LinkFate fate = LinkFate::kNotYet;  ///< of the motion handed over last
   double earliest_leave = 0.0;        ///< [s]

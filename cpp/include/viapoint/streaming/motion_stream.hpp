@@ -33,21 +33,24 @@ struct LateStep {
 class MotionStream {
  public:
   /// Where the motion runs: ControllerLoop::follow, or VirtualLoop's.
-  using Follow = std::function<std::shared_ptr<OpenJob>(std::shared_ptr<const Trajectory>)>;
+  using Follow = std::function<std::shared_ptr<Follower>(std::shared_ptr<const Trajectory>)>;
 
   /// @param beginning where it starts, its tolerance and its robot; steps in it are taken first
   /// @param margin what planning and handing over may take of the motion under way [s]
   /// @throws MotionError as StreamPlanner
   MotionStream(RobotPtr robot, const MotionProgram& beginning, Follow follow, double margin);
 
-  /// Takes the next step, and hands over what has become certain by it to an arm that is moving.
+  /// Takes the next step. To an arm that is moving it hands over what was certain before a step
+  /// that is no output; the step itself only where the arm is about to come to its end. So outputs
+  /// that are told right after a move come with it, and have their places before its end, too.
   /// @throws MotionError what is wrong with the step, which then is not taken: no other can follow,
   ///   and the arm rests where the steps before it end; or why the arm does not take up the motion:
   ///   then the run ends where the motion before it ends, and every other call throws the same
   void add(const Step& step);
   /// No step follows. @throws MotionError as add()
   void end();
-  /// Hands over what is due. @throws MotionError as add()
+  /// Hands over what is due. The first call after add() leaves that step time for outputs that
+  /// belong to it. @throws MotionError as add()
   void hand_over();
 
   /// Steps told that the arm has not begun.
@@ -56,7 +59,7 @@ class MotionStream {
   /// it is for others to come that it waits, however many are ahead.
   [[nodiscard]] bool wants_steps() const { return tried_ == Need::kNow; }
   /// The run, from the first motion on; null before that.
-  [[nodiscard]] const std::shared_ptr<OpenJob>& job() const { return job_; }
+  [[nodiscard]] const std::shared_ptr<Follower>& run() const { return run_; }
   /// How many steps came late, and the newest of them, at most kKept.
   [[nodiscard]] std::uint64_t late_count() const { return late_count_; }
   [[nodiscard]] const std::vector<LateStep>& late() const { return late_; }
@@ -79,14 +82,17 @@ class MotionStream {
   [[nodiscard]] bool is_decided();
   void note_late();
   [[nodiscard]] double time_left() const;
+  /// The arm is about to come to its end: to go on is worth more than an output's place.
+  [[nodiscard]] bool is_in_hurry() const;
 
   StreamPlanner planner_;
   Follow follow_;
   double margin_;
-  std::shared_ptr<OpenJob> job_;
+  std::shared_ptr<Follower> run_;
   std::exception_ptr trouble_;  ///< why the arm did not take up a motion
   bool is_offered_ = false;     ///< a motion whose fate is open
   bool is_stop_ = false;        ///< it begins where the arm rests on its path
+  bool is_fresh_ = false;       ///< the last step has come since hand_over()
   /// The first step that was told after the arm had all that was certain, if one was; and the one
   /// that the motion handed over last had waited for.
   std::optional<LateStep> awaited_;

@@ -1,0 +1,45 @@
+/// @file
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <memory>
+
+#include "remote/open_run.hpp"
+#include "viapoint/realtime/controller_loop.hpp"
+
+namespace viapoint {
+
+/// A run, and how it gets longer.
+struct KeptRun {
+  std::shared_ptr<Job> job;
+  std::shared_ptr<OpenRun> open;  ///< null for one that is whole
+};
+
+[[nodiscard]] bool has_ended(const Job& job);
+
+/// The newest runs by their numbers, from 1. Threads: one at a time.
+class RunBook {
+ public:
+  explicit RunBook(std::size_t kept) : kept_(kept) {}
+
+  /// Returns its number.
+  std::uint64_t add(KeptRun run);
+  /// @throws MotionError(kBadArgument) for a run that is not kept
+  [[nodiscard]] const KeptRun& find(std::uint64_t number) const;
+  /// nullptr before the first.
+  [[nodiscard]] const KeptRun* newest() const { return runs_.empty() ? nullptr : &runs_.back(); }
+  [[nodiscard]] bool is_any_under_way() const {
+    return newest() != nullptr && !has_ended(*newest()->job);
+  }
+  /// The newest one's number; 0 before the first.
+  [[nodiscard]] std::uint64_t last() const { return last_; }
+
+ private:
+  std::size_t kept_;
+  std::deque<KeptRun> runs_;  ///< the last has number last_
+  std::uint64_t last_ = 0;
+};
+
+}  // namespace viapoint
