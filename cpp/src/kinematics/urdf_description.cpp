@@ -130,6 +130,14 @@ bool moves(const urdf::Joint& joint) {
          joint.type == urdf::Joint::PRISMATIC;
 }
 
+/// Links of a ring own one another, and would never be given back.
+void let_go_of_children(const urdf::ModelInterface& model) {
+  for (const auto& [name, link] : model.links_) {
+    link->child_joints.clear();
+    link->child_links.clear();
+  }
+}
+
 /// The way up from every link ends at the root: liburdfdom lets a ring of joints beside it pass.
 void require_tree(const urdf::ModelInterface& model, const std::string& source) {
   std::set<urdf::LinkConstSharedPtr> rooted;
@@ -139,6 +147,7 @@ void require_tree(const urdf::ModelInterface& model, const std::string& source) 
          link = link->parent_joint ? model.getLink(link->parent_joint->parent_link_name)
                                    : nullptr) {
       if (way.insert(link).second) continue;
+      let_go_of_children(model);
       refuse(source,
              "link \"" + link->name +
                  "\" carries itself: its joints form a ring, apart from the root " + "link \"" +
