@@ -1,10 +1,10 @@
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <chrono>
 #include <limits>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "realtime/random_motion.hpp"
 #include "realtime/rate_path.hpp"
@@ -100,28 +100,32 @@ std::string refusal(const Motion& motion, std::vector<TimedCommand> commands,
   return message;
 }
 
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
 TEST(Simulate, TellsAnOverrideJustAboveItsBoundApartFromIt) {
   const Motion motion = motion_of(5);
-  EXPECT_THAT(refusal(motion, {{0.0, Kind::kOverride, 1.0000001}}, kCycle),
-              testing::HasSubstr("1.0000001"));
+  EXPECT_TRUE(
+      has(refusal(motion, {{0.0, Kind::kOverride, 1.0000001}}, kCycle), "1.0000001"));
 }
 
 TEST(Simulate, RefusesRunsLongerThanItsLogBeforeItFillsIt) {
-  using testing::AllOf, testing::HasSubstr, testing::Not;
   const Motion motion = motion_of(6);
-  // Filled to its end the log would say that a cycle more is needed; what is foreseen is more.
-  const auto limit = AllOf(HasSubstr("at most 2000000 fit"), Not(HasSubstr("at least 2e+06 ")),
-                           Not(HasSubstr("at least 2000001 ")));
-  EXPECT_THAT(refusal(motion, {{0.0, Kind::kOverride, 1e-6}}, kCycle), limit);
-  EXPECT_THAT(refusal(motion, {{0.05, Kind::kOverride, 1e-6}}, kCycle), limit);
-  EXPECT_THAT(refusal(motion, {{0.05, Kind::kPause, 0.0}, {1e5, Kind::kResume, 0.0}}, kCycle),
-              limit);
-  EXPECT_THAT(refusal(motion, {{0.05, Kind::kOverride, 2e-6}, {1e5, Kind::kOverride, 1.0}}, kCycle),
-              limit);
-  EXPECT_THAT(refusal(motion, {{0.05, Kind::kPause, 0.0}, {3.0, Kind::kResume, 0.0}},
-                      std::chrono::microseconds(1)),
-              limit);
-  EXPECT_THAT(refusal(motion, {}, std::chrono::nanoseconds(10)), HasSubstr("at least 1000 ns"));
+  const std::chrono::microseconds shortest(1);
+  const std::vector<std::string> refusals = {
+      refusal(motion, {{0.0, Kind::kOverride, 1e-6}}, kCycle),
+      refusal(motion, {{0.05, Kind::kOverride, 1e-6}}, kCycle),
+      refusal(motion, {{0.05, Kind::kPause, 0.0}, {1e5, Kind::kResume, 0.0}}, kCycle),
+      refusal(motion, {{0.05, Kind::kOverride, 2e-6}, {1e5, Kind::kOverride, 1.0}}, kCycle),
+      refusal(motion, {{0.05, Kind::kPause, 0.0}, {3.0, Kind::kResume, 0.0}}, shortest),
+  };
+  for (const std::string& message : refusals) {
+    EXPECT_TRUE(has(message, "at most 2000000 fit")) << message;
+    // Filled to its end the log would say that a cycle more is needed; what is foreseen is more.
+    EXPECT_FALSE(has(message, "at least 2e+06 ") || has(message, "at least 2000001 ")) << message;
+  }
+  EXPECT_TRUE(has(refusal(motion, {}, std::chrono::nanoseconds(10)), "at least 1000 ns"));
 }
 
 TEST(Simulate, ASlowRunThatIsMadeQuickerInTimeIsRun) {
