@@ -106,8 +106,7 @@ bool has(const std::string& text, const std::string& part) {
 
 TEST(Simulate, TellsAnOverrideJustAboveItsBoundApartFromIt) {
   const Motion motion = motion_of(5);
-  EXPECT_TRUE(
-      has(refusal(motion, {{0.0, Kind::kOverride, 1.0000001}}, kCycle), "1.0000001"));
+  EXPECT_TRUE(has(refusal(motion, {{0.0, Kind::kOverride, 1.0000001}}, kCycle), "1.0000001"));
 }
 
 TEST(Simulate, RefusesRunsLongerThanItsLogBeforeItFillsIt) {
