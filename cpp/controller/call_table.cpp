@@ -4,6 +4,7 @@
 #include <grpcpp/support/status.h>
 #include <spdlog/spdlog.h>
 
+#include <chrono>
 #include <exception>
 #include <iterator>
 #include <utility>
@@ -16,6 +17,10 @@ namespace viapoint::controller {
 namespace {
 
 using Context = grpc::GenericCallbackServerContext;
+using std::chrono::steady_clock;
+
+/// What gRPC takes for a call besides its messages, about.
+constexpr std::size_t kBytesACall = 20U << 10;
 
 /// The problem goes with the status, for clients that want more than its text.
 void tell(const Problem& problem, Context& context) {
@@ -74,11 +79,14 @@ class CallTable::Call final : public grpc::ServerGenericBidiReactor {
 
   std::list<Call>* list = nullptr;  ///< that it is in
   std::list<Call>::iterator place;
+  // Of one that is answered:
+  steady_clock::time_point answered;
+  std::size_t bytes = 0;
 
  private:
   /// From here on it may be gone.
   void answer(const grpc::Status& status) {
-    table_.note_answer(*this);
+    table_.note_answer(*this, reply_.Length());
     if (!status.ok()) return Finish(status);
     StartWriteAndFinish(&reply_, grpc::WriteOptions(), status);
   }
@@ -89,7 +97,7 @@ class CallTable::Call final : public grpc::ServerGenericBidiReactor {
   grpc::ByteBuffer request_, reply_;
 };
 
-CallTable::CallTable(std::size_t most_unread) : most_unread_(most_unread) {}
+CallTable::CallTable(const UnreadBounds& bounds) : bounds_(bounds) {}
 
 CallTable::~CallTable() = default;
 
@@ -107,21 +115,35 @@ grpc::ServerGenericBidiReactor* CallTable::CreateReactor(Context* context) {
   return &call;  // gRPC ends no call before it has it
 }
 
-void CallTable::note_answer(Call& call) {
-  const auto move = [](Call& moved, std::list<Call>& to) {
-    to.splice(to.end(), *moved.list, moved.place);
-    moved.list = &to;
-  };
+void CallTable::note_answer(Call& call, std::size_t bytes) {
   const std::lock_guard lock(mutex_);
-  move(call, unread_);
-  if (unread_.size() <= most_unread_) return;
+  unread_.splice(unread_.end(), *call.list, call.place);
+  call.list = &unread_;
+  call.answered = steady_clock::now();
+  call.bytes = kBytesACall + bytes;
+  unread_bytes_ += call.bytes;
+  while (is_too_much_unread()) give_up_oldest();
+}
+
+bool CallTable::is_too_much_unread() const {
+  if (unread_.size() <= 1) return false;
+  if (unread_bytes_ > bounds_.bytes) return true;
+  // A crowd that reads what it asks for has many answers on their way, and none that is old.
+  return unread_.size() > bounds_.calls &&
+         unread_.back().answered - unread_.front().answered > bounds_.patience;
+}
+
+void CallTable::give_up_oldest() {
   Call& oldest = unread_.front();
-  move(oldest, under_way_);
+  under_way_.splice(under_way_.end(), unread_, oldest.place);
+  oldest.list = &under_way_;
+  unread_bytes_ -= oldest.bytes;
   oldest.give_up();  // its context lives until OnDone has come back, which waits for the lock
 }
 
 void CallTable::remove(const Call& call) {
   const std::lock_guard lock(mutex_);
+  if (call.list == &unread_) unread_bytes_ -= call.bytes;
   call.list->erase(call.place);
 }
 

@@ -4,6 +4,7 @@
 #include <grpcpp/generic/async_generic_service.h>
 #include <grpcpp/support/byte_buffer.h>
 
+#include <chrono>
 #include <cstddef>
 #include <functional>
 #include <list>
@@ -15,6 +16,13 @@
 
 namespace viapoint::controller {
 
+/// How many answers wait for clients to read them.
+struct UnreadBounds {
+  std::size_t calls;                  ///< kept however long nobody reads them
+  std::chrono::nanoseconds patience;  ///< those beyond are kept for so long
+  std::size_t bytes;                  ///< of all together: beyond, the oldest goes, however young
+};
+
 /// Does the calls of a service by their names, each in its lane; what a call throws is its refusal.
 /// No thread ever waits for a client: one that sends half a message, or reads no answer, holds
 /// nothing but memory, and the answers that nobody reads are given up, those given first, where
@@ -24,8 +32,7 @@ class CallTable final : public grpc::CallbackGenericService {
   /// Answers one message by another. @throws MotionError, NotInControl
   using Work = std::function<grpc::ByteBuffer(const std::string& peer, const grpc::ByteBuffer&)>;
 
-  /// @param most_unread answers kept for clients to read [>= 1]
-  explicit CallTable(std::size_t most_unread);
+  explicit CallTable(const UnreadBounds& bounds);
   /// After the server has ended.
   ~CallTable() override;
   CallTable(const CallTable&) = delete;
@@ -45,14 +52,18 @@ class CallTable final : public grpc::CallbackGenericService {
     Work work;
   };
 
-  void note_answer(Call& call);
+  void note_answer(Call& call, std::size_t bytes);
+  /// @pre locked
+  [[nodiscard]] bool is_too_much_unread() const;
+  void give_up_oldest();
   void remove(const Call& call);
 
-  const std::size_t most_unread_;
+  const UnreadBounds bounds_;
   std::map<std::string, Entry> entries_;
   std::mutex mutex_;  ///< guards what follows
   std::list<Call> under_way_;
   std::list<Call> unread_;  ///< answered, the oldest first
+  std::size_t unread_bytes_ = 0;
 };
 
 }  // namespace viapoint::controller

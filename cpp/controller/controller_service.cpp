@@ -19,8 +19,9 @@ namespace {
 constexpr const char* kService = "/viapoint.v1.Controller/";
 constexpr std::size_t kMostName = 200;
 constexpr std::size_t kMostRecords = 1000;
-/// Answers kept for clients to read, the largest of 0.5 MB.
-constexpr std::size_t kMostUnread = 64;
+/// Of answers for clients to read: 128 of the largest, thousands of most.
+constexpr UnreadBounds kUnread{
+    .calls = 64, .patience = std::chrono::seconds(1), .bytes = 64U << 20};
 /// A motion may take seconds to prove, a drive to enable.
 constexpr int kBeatThreads = 1, kCommandThreads = 4, kLookThreads = 2;
 constexpr std::size_t kMostWaiting = 128;  ///< calls of a lane
@@ -105,7 +106,7 @@ ControllerService::ControllerService(ArmHost& host, RobotPtr robot, std::chrono:
       heartbeat_(heartbeat),
       inputs_(std::move(world.inputs)),
       hand_(std::move(world.hand)),
-      calls_(kMostUnread),
+      calls_(kUnread),
       beats_(kBeatThreads, kMostWaiting),
       commands_(kCommandThreads, kMostWaiting),
       looks_(kLookThreads, kMostWaiting) {

@@ -27,8 +27,10 @@ _CROWDED = "HTTP status 503"
 """How gRPC tells of a controller that has no room for one more connection."""
 _FULL = "too many calls wait"
 """How a controller tells of a call that it has not begun."""
+_READS = "Get"
+"""Calls whose names begin so change nothing, and may be made again whatever became of them."""
 _AGAIN = 0.02
-"""Such a call is made again after so long [s]."""
+"""A call is made again after so long [s]."""
 _OPTIONS: list[tuple[str, int]] = [
     ("grpc.enable_http_proxy", 0),
     ("grpc.max_receive_message_length", 1 << 22),
@@ -135,7 +137,7 @@ class Wire:
             try:
                 return self._calls[method](request, timeout=patience)
             except grpc.RpcError as error:
-                if time.monotonic() > end or not _found_no_room(error):
+                if time.monotonic() > end or not _may_be_made_again(error, method):
                     raise self._translated(error, method) from None
             except ValueError:  # of a channel that another thread has closed meanwhile
                 raise closed() from None
@@ -166,9 +168,12 @@ class Wire:
             self._channel.close()
 
 
-def _found_no_room(error: grpc.RpcError) -> bool:
+def _may_be_made_again(error: grpc.RpcError, method: str) -> bool:
+    """Tell whether the call was not begun, or only reads and its answer was given up in a crowd."""
     status: Any = error
-    return _FULL in (status.details() or "")
+    if _FULL in (status.details() or ""):
+        return True
+    return method.startswith(_READS) and status.code() == grpc.StatusCode.CANCELLED
 
 
 def closed() -> UnconnectedError:

@@ -75,11 +75,16 @@ def test_clients_that_read_no_answer_keep_no_command_waiting(serve):
                 connection.close()
 
 
-class Full(grpc.GenericRpcHandler):
-    """Stands in for a controller that has no room for the first calls."""
+FULL = (grpc.StatusCode.RESOURCE_EXHAUSTED, "too many calls wait for an answer")
+GIVEN_UP = (grpc.StatusCode.CANCELLED, "")
 
-    def __init__(self, refusals):
+
+class Crowded(grpc.GenericRpcHandler):
+    """Stands in for a controller that has no room for the first calls, or for their answers."""
+
+    def __init__(self, refusals, refusal):
         self.left = refusals
+        self.refusal = refusal
 
     def service(self, details):
         return grpc.unary_unary_rpc_method_handler(self.answer)
@@ -87,31 +92,53 @@ class Full(grpc.GenericRpcHandler):
     def answer(self, request, context):
         self.left -= 1
         if self.left >= 0:
-            reason = "too many calls wait for an answer"
-            context.abort(grpc.StatusCode.RESOURCE_EXHAUSTED, reason)
+            context.abort(*self.refusal)
         return b""
 
 
-@pytest.mark.parametrize("refusals", [3, 10**9])
-def test_a_call_that_finds_no_room_is_made_again_for_as_long_as_it_may_take(refusals):
-    controller = Full(refusals)
-    server = grpc.server(ThreadPoolExecutor(1), handlers=(controller,))
-    wire = Wire(f"127.0.0.1:{server.add_insecure_port('127.0.0.1:0')}", None)
-    server.start()
+@pytest.fixture
+def crowded():
+    """Begin such a controller, and connect to it."""
+    ends = []
 
-    def ask(patience):
-        return wire.call("GetState", message("GetStateRequest"), "ArmState", patience=patience)
+    def begin(refusals, refusal):
+        controller = Crowded(refusals, refusal)
+        server = grpc.server(ThreadPoolExecutor(1), handlers=(controller,))
+        wire = Wire(f"127.0.0.1:{server.add_insecure_port('127.0.0.1:0')}", None)
+        ends.extend([wire.close, lambda: server.stop(0)])
+        server.start()
+        return controller, wire
 
-    try:
-        if refusals == 3:
-            assert ask(60.0) == message("ArmState")
-            assert controller.left == -1
-        else:
-            with pytest.raises(UnconnectedError, match="too many calls wait"):
-                ask(0.2)
-    finally:
-        wire.close()
-        server.stop(0)
+    yield begin
+    for end in ends:
+        end()
+
+
+def test_a_call_that_finds_no_room_is_made_again_for_as_long_as_it_may_take(crowded):
+    controller, wire = crowded(3, FULL)
+    steer = message("SteerRequest")
+    assert wire.call("Steer", steer, "SteerReply", patience=60.0) == message("SteerReply")
+    assert controller.left == -1
+    _, wire = crowded(10**9, FULL)
+    with pytest.raises(UnconnectedError, match="too many calls wait"):
+        wire.call("Steer", steer, "SteerReply", patience=0.2)
+
+
+def test_what_only_reads_is_asked_again_when_its_answer_was_given_up(crowded):
+    controller, wire = crowded(3, GIVEN_UP)
+    state = wire.call("GetState", message("GetStateRequest"), "ArmState", patience=60.0)
+    assert state == message("ArmState")
+    assert controller.left == -1
+    _, wire = crowded(10**9, GIVEN_UP)
+    with pytest.raises(UnconnectedError, match="CANCELLED"):
+        wire.call("GetState", message("GetStateRequest"), "ArmState", patience=0.2)
+
+
+def test_a_command_whose_answer_was_given_up_is_not_given_twice(crowded):
+    controller, wire = crowded(3, GIVEN_UP)
+    with pytest.raises(UnconnectedError, match="CANCELLED"):
+        wire.call("Steer", message("SteerRequest"), "SteerReply", patience=60.0)
+    assert controller.left == 2
 
 
 def test_a_crowd_is_turned_away_with_a_reason_and_there_is_room_when_it_has_gone(serve):
