@@ -4,7 +4,6 @@
 #include <cmath>
 #include <optional>
 #include <tuple>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -128,28 +127,19 @@ py::class_<HandleOf<Loop>> bind_loop(py::module_& m, const char* name, const cha
       .def(
           "guide",
           [](const Handle& l, const std::vector<Vector>& positions) {
-            static_cast<void>(l.open());
+            const std::shared_ptr<Loop> open = l.open();
             std::vector<JointVector> way;
             way.reserve(positions.size());
             for (const Vector& q : positions) way.push_back(joints_from(q, "q", l.joints));
-            l.open()->require_power();
             GuidingHand& hand = simulated(l.links.hand, "an arm");
-            hand.guide(std::move(way));
-            if constexpr (std::is_same_v<Loop, ControllerLoop>) {
-              const std::shared_ptr<Loop> open = l.open();
-              const Release release;
-              hand.await([&] { return open->guided(); });
-            }
+            const Release release;
+            open->admit_hand([&](const Measurement& /*now*/) { hand.guide(std::move(way)); });
           },
           py::arg("positions"), "A hand takes the simulated arm there, a position a cycle.")
       .def(
           "let_go", [](const Handle& l) { simulated(l.links.hand, "an arm").let_go(); },
           "The hand lets go of the simulated arm.")
-      .def_property_readonly("guided",
-                             [](const Handle& l) {
-                               return l.open()->guided() ||
-                                      (l.links.hand != nullptr && l.links.hand->guides());
-                             })
+      .def_property_readonly("guided", [](const Handle& l) { return l.open()->guided(); })
       .def_property_readonly("newest_cycle",
                              [](const Handle& l) { return l.open()->newest_cycle().cycle; })
       .def(

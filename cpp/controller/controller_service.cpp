@@ -166,8 +166,6 @@ void ControllerService::get_robot(const v1::GetRobotRequest& /*request*/, v1::Ro
 
 void ControllerService::get_state(const v1::GetStateRequest& /*request*/, v1::ArmState& reply) {
   reply = wire_of(host_.status());
-  // Also before the loop has seen the hand: who guides the arm and looks finds it guided.
-  reply.set_guided(reply.guided() || hand_.guides());
 }
 
 void ControllerService::get_cycles(const v1::GetCyclesRequest& request, v1::CyclesPart& reply) {
@@ -292,7 +290,7 @@ void ControllerService::jog(const v1::JogRequest& request, v1::JogReply& /*reply
 void ControllerService::guide(const v1::GuideRequest& request, v1::GuideReply& /*reply*/) {
   host_.require_power(request.token());
   hand_.add(request.offset(), rows_of(request.positions(), "positions", robot_->joints()));
-  if (request.begins()) hand_.begin(host_);
+  if (request.begins()) hand_.begin(host_, request.token());
 }
 
 void ControllerService::let_go(const v1::LetGoRequest& request, v1::LetGoReply& /*reply*/) {

@@ -1,7 +1,6 @@
 #include "controller/hand_motion.hpp"
 
 #include <iterator>
-#include <string>
 #include <utility>
 
 #include "viapoint/core/error.hpp"
@@ -35,28 +34,24 @@ void HandMotion::add(std::size_t offset, std::vector<JointVector> positions) {
   std::move(positions.begin(), positions.end(), std::back_inserter(pending_));
 }
 
-void HandMotion::begin(const ArmHost& host) {
+void HandMotion::begin(ArmHost& host, const std::string& token) {
   GuidingHand& taking = hand();
-  const HostStatus arm = host.status();
-  if (arm.busy || arm.jogging) {
-    throw MotionError(ErrorCode::kBusy, "the arm is moved by a run or a jog",
-                      {"wait for its end, or stop it"});
-  }
-  std::unique_lock lock(mutex_);
-  std::vector<JointVector> way = std::exchange(pending_, {});
-  lock.unlock();
-  if (!way.empty()) {
-    const double off = (way.front() - arm.measured).cwiseAbs().maxCoeff();
-    if (!(off <= kReach)) {
-      throw MotionError(ErrorCode::kBadArgument,
-                        "the hand begins " + number_text(off) +
-                            " rad or m from where the arm stands; allowed are " +
-                            number_text(kReach),
-                        {"begin where the arm is measured"});
+  host.admit_hand(token, [&](const JointVector& measured) {
+    std::unique_lock lock(mutex_);
+    std::vector<JointVector> way = std::exchange(pending_, {});
+    lock.unlock();
+    if (!way.empty()) {
+      const double off = (way.front() - measured).cwiseAbs().maxCoeff();
+      if (!(off <= kReach)) {
+        throw MotionError(ErrorCode::kBadArgument,
+                          "the hand begins " + number_text(off) +
+                              " rad or m from where the arm stands; allowed are " +
+                              number_text(kReach),
+                          {"begin where the arm is measured"});
+      }
     }
-  }
-  taking.guide(std::move(way));
-  taking.await([&] { return host.status().guided; });
+    taking.guide(std::move(way));
+  });
 }
 
 void HandMotion::let_go() { hand().let_go(); }

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <memory>
 #include <mutex>
+#include <string>
 #include <vector>
 
 #include "viapoint/drives/guiding_hand.hpp"
@@ -27,13 +28,12 @@ class HandMotion {
   /// @throws MotionError(kBadArgument) for another offset, beyond kMaxPositions, and for a real
   ///   drive
   void add(std::size_t offset, std::vector<JointVector> positions);
-  /// Takes the arm through what was added, a position a cycle, and returns when the loop has seen
-  /// it.
+  /// Takes the arm through what was added, a position a cycle, from the next one on.
   /// @throws MotionError(kBusy) where the arm moves or is guided; kBadArgument where it stands
-  ///   farther than kReach from the first position, for none, and for a real drive
-  void begin(const ArmHost& host);
+  ///   farther than kReach from the first position, for none, and for a real drive; what
+  ///   ArmHost::admit_hand does
+  void begin(ArmHost& host, const std::string& token);
   void let_go();
-  [[nodiscard]] bool guides() const { return hand_ != nullptr && hand_->guides(); }
 
  private:
   [[nodiscard]] GuidingHand& hand() const;

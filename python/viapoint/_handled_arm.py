@@ -75,7 +75,7 @@ class HandledArm:
             A hand for another number of joints, or one that begins elsewhere; an arm that is not
             simulated.
         BusyError
-            A run is under way, or a hand guides the arm already.
+            A run or a jog is under way, or a hand guides the arm already.
         DriveFaultError
             The arm has failed, or its drive was released.
         """

@@ -188,13 +188,10 @@ def test_a_hand_may_let_go_early(session, ur5e, hand):
         assert arm.run(vp.Program(ur5e, start=arm.setpoint).movej(HOME)).state == "finished"
 
 
-def test_runs_and_jogs_are_refused_while_a_hand_guides(ur5e, hand):
-    with (
-        _session.use(Recorder(virtual=True)),
-        vp.connect("sim://ur5e", start=HOME) as arm,
-    ):
-        arm.guide(hand)
-        arm._loop.pass_cycles(10)
+def test_runs_and_jogs_are_refused_from_when_a_hand_guides(session, ur5e):
+    still = vp.Recording.of_samples(ur5e, [0.0, 500.0], np.tile(HOME, (2, 1)))
+    with vp.connect("sim://ur5e", start=HOME) as arm:
+        arm.guide(still)
         for refused in (
             lambda: arm.jog([0.1] * 6),
             lambda: arm.run(vp.Program(ur5e, start=HOME).movej(HOME + 0.1)),
@@ -203,6 +200,17 @@ def test_runs_and_jogs_are_refused_while_a_hand_guides(ur5e, hand):
                 refused()
         with pytest.raises(errors.BusyError, match="guides the arm already"):
             arm.guide(vp.Recording.of_samples(ur5e, [0, 1], np.tile(arm.joints, (2, 1))))
+        assert arm.guided
+        assert arm.fault == ""
+
+
+def test_an_arm_that_fails_while_it_is_guided_is_guided_no_more(session, ur5e):
+    with vp.connect("sim://ur5e", start=HOME) as arm:
+        jump = np.vstack([HOME, HOME, HOME + 0.5, HOME + 0.5])
+        arm.guide(vp.Recording.of_samples(ur5e, [0.0, 0.1, 0.102, 500.0], jump))
+        recorded = arm.record(60.0, until=lambda: not arm.guided)
+        assert recorded.duration < 60.0
+        assert "jump" in arm.fault
 
 
 def test_hands_that_do_not_fit_are_refused(ur5e, hand):

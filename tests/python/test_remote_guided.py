@@ -155,7 +155,7 @@ def test_hands_that_do_not_fit_are_refused_by_the_controller(url):
         job = arm.run(
             vp.Program(arm.robot, start=arm.setpoint, scale=0.02).movej(HOME + 0.5), wait=False
         )
-        with pytest.raises(errors.BusyError, match="moved by a run"):
+        with pytest.raises(errors.BusyError, match="already under way"):
             guide([arm.joints])
         assert not arm.guided
         job.stop()

@@ -1,7 +1,5 @@
 #include "viapoint/drives/guiding_hand.hpp"
 
-#include <chrono>
-#include <thread>
 #include <utility>
 
 #include "viapoint/core/error.hpp"
@@ -21,14 +19,6 @@ void GuidingHand::guide(std::vector<JointVector> positions) {
   next_ = 0;
   lets_go_.store(false, std::memory_order_relaxed);
   guides_.store(true, std::memory_order_release);
-}
-
-void GuidingHand::await(const std::function<bool()>& sees_it) const {
-  constexpr std::chrono::milliseconds kLook{1};
-  constexpr int kMostLooks = 1000;
-  for (int k = 0; k < kMostLooks && guides() && !sees_it(); ++k) {
-    std::this_thread::sleep_for(kLook);
-  }
 }
 
 bool GuidingHand::take(JointVector& q) noexcept {

@@ -107,6 +107,10 @@ std::shared_ptr<OpenJob> ControllerLoop::follow(std::shared_ptr<const Trajectory
 
 void ControllerLoop::jog(const JointVector& velocity) { impl_->desk.jog(velocity); }
 
+void ControllerLoop::admit_hand(const std::function<void(const Measurement&)>& take) {
+  impl_->desk.admit_hand(take);
+}
+
 bool ControllerLoop::jogging() const { return impl_->desk.jogs(); }
 
 std::string ControllerLoop::jog_block() const {

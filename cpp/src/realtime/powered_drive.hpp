@@ -23,6 +23,7 @@ class PoweredDrive {
   PoweredDrive& operator=(const PoweredDrive&) = delete;
 
   [[nodiscard]] Drive& drive() { return *drive_; }
+  [[nodiscard]] const Drive& drive() const { return *drive_; }
   [[nodiscard]] const Measurement& start() const { return start_; }
 
  private:

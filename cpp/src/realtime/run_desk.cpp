@@ -58,16 +58,7 @@ std::shared_ptr<LoopJob> RunDesk::run(std::shared_ptr<const Trajectory> trajecto
                                       const std::function<void()>& last_word) {
   const std::lock_guard lock(admission_);
   if (trajectory == nullptr) throw MotionError(ErrorCode::kBadArgument, "there is no motion");
-  require_power();
-  await_log_of_ended_run();
-  if (busy()) {
-    throw MotionError(ErrorCode::kBusy, "a run is already under way",
-                      {"wait for its end", "stop it first"});
-  }
-  if (jogs()) {
-    throw MotionError(ErrorCode::kBusy, "the arm is being jogged",
-                      {"stop the jog, and wait until the arm rests"});
-  }
+  require_rest();
   require_no_hand();
   admit(*trajectory, limits_, channels_.snapshot.read().q);
   auto job = std::make_shared<LoopJob>(std::move(trajectory), limits_, log_records_, open);
@@ -85,8 +76,8 @@ std::shared_ptr<LoopJob> RunDesk::run(std::shared_ptr<const Trajectory> trajecto
 void RunDesk::jog(const JointVector& velocity) {
   admit_jog(velocity, limits_);
   const std::lock_guard lock(admission_);
-  require_power();
   await_log_of_ended_run();
+  require_power();
   if (busy() && !job_->may_be_jogged()) {
     throw MotionError(ErrorCode::kBusy,
                       "a run is under way, and the arm jogs only between runs and in a pause",
@@ -96,9 +87,17 @@ void RunDesk::jog(const JointVector& velocity) {
   channels_.jog.write(velocity);
 }
 
+void RunDesk::admit_hand(const std::function<void(const Measurement&)>& take) {
+  const std::lock_guard lock(admission_);
+  require_rest();
+  take(channels_.snapshot.read().measurement);
+}
+
 bool RunDesk::is_guided() const {
-  return channels_.guided.load(std::memory_order_acquire) &&
-         !channels_.faulted.load(std::memory_order_acquire);
+  if (channels_.faulted.load(std::memory_order_acquire)) return false;
+  // In this order: a hand that is found to have let go was seen by the loop, which still says so
+  // until its setpoint is where the hand has left the arm.
+  return powered_.drive().is_held() || channels_.guided.load(std::memory_order_acquire);
 }
 
 bool RunDesk::jogs() const {
@@ -116,6 +115,20 @@ void RunDesk::set_override(double share) {
                       {"give a share of the programmed speed, e.g. 0.5"});
   }
   channels_.override_share.store(share, std::memory_order_relaxed);
+}
+
+void RunDesk::require_rest() {
+  await_log_of_ended_run();
+  // After it: a stop that releases the drive has done so by then.
+  require_power();
+  if (busy()) {
+    throw MotionError(ErrorCode::kBusy, "a run is already under way",
+                      {"wait for its end", "stop it first"});
+  }
+  if (jogs()) {
+    throw MotionError(ErrorCode::kBusy, "the arm is being jogged",
+                      {"stop the jog, and wait until the arm rests"});
+  }
 }
 
 void RunDesk::require_no_hand() const {

@@ -30,10 +30,12 @@ class RunDesk {
                                              const std::function<void()>& last_word = {});
   /// As ControllerLoop::jog.
   void jog(const JointVector& velocity);
+  /// As ControllerLoop::admit_hand.
+  void admit_hand(const std::function<void(const Measurement&)>& take);
   /// A jog that is under way, or wished and not begun. A drive that failed or was released jogs no
   /// more.
   [[nodiscard]] bool jogs() const;
-  /// A hand moves the arm.
+  /// A hand moves the arm, or is about to.
   [[nodiscard]] bool is_guided() const;
   /// As ControllerLoop::set_override.
   void set_override(double share);
@@ -58,6 +60,9 @@ class RunDesk {
   [[nodiscard]] std::mutex& admission() { return admission_; }
 
  private:
+  /// @pre admission is held; @throws MotionError(kDriveFault, kBusy) unless the arm has power and
+  ///   neither a run nor a jog moves it
+  void require_rest();
   void require_no_hand() const;
   [[nodiscard]] bool busy() const;
   void await_log_of_ended_run() const;

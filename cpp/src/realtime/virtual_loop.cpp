@@ -39,6 +39,9 @@ std::shared_ptr<OpenJob> VirtualLoop::follow(std::shared_ptr<const Trajectory> f
 }
 
 void VirtualLoop::jog(const JointVector& velocity) { desk_->jog(velocity); }
+void VirtualLoop::admit_hand(const std::function<void(const Measurement&)>& take) {
+  desk_->admit_hand(take);
+}
 bool VirtualLoop::jogging() const { return desk_->jogs(); }
 std::string VirtualLoop::jog_block() const {
   return text_of(desk_->channels().jog_block.load(std::memory_order_relaxed));

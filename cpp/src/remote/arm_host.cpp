@@ -308,6 +308,19 @@ void ArmHost::jog(const std::string& token, const JointVector& velocity) {
   impl_->end_jog(*loop);
 }
 
+void ArmHost::admit_hand(const std::string& token,
+                         const std::function<void(const JointVector& measured)>& take) {
+  std::unique_lock lock(impl_->mutex);
+  const std::shared_ptr<ControllerLoop> loop = impl_->working_loop(token);
+  lock.unlock();
+  loop->admit_hand([&](const Measurement& now) {
+    // Control may have been lost meanwhile, and hands told to let go: then none takes the arm.
+    const std::lock_guard again(impl_->mutex);
+    static_cast<void>(impl_->working_loop(token));
+    take(now.q);
+  });
+}
+
 void ArmHost::set_override(double share) {
   const std::lock_guard lock(impl_->mutex);
   if (impl_->loop != nullptr) impl_->loop->set_override(share);

@@ -66,6 +66,43 @@ TEST(GuidedLoop, FollowsTheHandAndLeadsTheArmFromWhereItWasLeft) {
   EXPECT_EQ(cell.loop.fault(), "");
 }
 
+TEST(GuidedLoop, IsTakenByAHandOnlyWhereNothingElseMovesTheArm) {
+  Cell cell;
+  int hands = 0;
+  const auto take = [&](const Measurement& now) {
+    ++hands;
+    cell.hand->guide(std::vector<JointVector>(100, now.q));
+  };
+  const auto refusal = [&] { return code_of([&] { cell.loop.admit_hand(take); }); };
+  cell.loop.jog(JointVector::Constant(2, 0.1));
+  EXPECT_EQ(refusal(), ErrorCode::kBusy);  // wished, and not begun
+  cell.loop.pass(10);
+  EXPECT_EQ(refusal(), ErrorCode::kBusy);
+  while (cell.loop.jogging()) cell.loop.pass(1);
+
+  const auto job = cell.loop.run(cell.motion_from(cell.loop.position()));
+  EXPECT_EQ(refusal(), ErrorCode::kBusy);
+  cell.loop.pass(10);
+  job->pause();
+  while (job->state() != RunState::kPaused) cell.loop.pass(1);
+  EXPECT_EQ(refusal(), ErrorCode::kBusy);
+  job->stop();
+  while (!job->wait(0.0)) cell.loop.pass(1);
+  EXPECT_EQ(hands, 0);
+
+  cell.loop.admit_hand(take);
+  // At once, before a cycle has seen it.
+  EXPECT_TRUE(cell.loop.guided());
+  EXPECT_EQ(
+      code_of([&] { static_cast<void>(cell.loop.run(cell.motion_from(cell.loop.position()))); }),
+      ErrorCode::kBusy);
+  EXPECT_EQ(code_of([&] { cell.loop.jog(JointVector::Constant(2, 0.1)); }), ErrorCode::kBusy);
+  EXPECT_EQ(refusal(), ErrorCode::kBusy);  // of the hand itself
+  EXPECT_EQ(cell.loop.pass(1000), 101);
+  EXPECT_FALSE(cell.loop.guided());
+  EXPECT_EQ(cell.loop.fault(), "");
+}
+
 TEST(GuidedLoop, TellsACycleByItsStamp) {
   Cell cell;
   cell.loop.pass(1);

@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <functional>
 #include <thread>
 
+#include "remote/two_joint_arm.hpp"
 #include "viapoint/core/error.hpp"
 #include "viapoint/drives/simulated_drive.hpp"
 #include "viapoint/remote/control_seat.hpp"
@@ -15,32 +15,10 @@ namespace {
 
 using std::chrono::milliseconds;
 using std::chrono::seconds;
-using std::chrono::steady_clock;
+using testing::await;
+using testing::move;
 
-JointLimits wide_limits() {
-  JointLimits limits;
-  limits.position_min = JointVector::Constant(2, -10.0);
-  limits.position_max = JointVector::Constant(2, 10.0);
-  limits.velocity = JointVector::Constant(2, 5.0);
-  limits.acceleration = JointVector::Constant(2, 50.0);
-  limits.jerk = JointVector::Constant(2, 5000.0);
-  return limits;
-}
-
-const JointLimits kLimits = wide_limits();
-
-/// Both joints from `from` by 1 rad within `duration` [s], from rest to rest.
-std::vector<TrajectoryPiece> move(double duration, double from = 0.0) {
-  TrajectoryPiece piece;
-  piece.duration = duration;
-  piece.joints = 2;
-  for (size_t joint = 0; joint < 2; ++joint) {
-    piece.path[0][joint] = from;
-    piece.path[1][joint] = 1.0;
-  }
-  piece.timing = {0.0, 0.0, 0.0, 10.0, -15.0, 6.0};
-  return {piece};
-}
+const JointLimits kLimits = testing::wide_limits();
 
 ArmHost::MakeLoop simulated() {
   return [](const JointVector& rest) {
@@ -69,16 +47,6 @@ class WeakDrive final : public Drive {
   const std::atomic<bool>& is_weak_;
   SimulatedDrive simulated_;
 };
-
-/// Until `holds`, at most a minute.
-[[nodiscard]] bool await(const std::function<bool()>& holds) {
-  const auto deadline = steady_clock::now() + seconds(60);
-  while (!holds()) {
-    if (steady_clock::now() > deadline) return false;
-    std::this_thread::sleep_for(milliseconds(1));
-  }
-  return true;
-}
 
 /// An operator who beats from a thread of his own for as long as he lives.
 class Operator {

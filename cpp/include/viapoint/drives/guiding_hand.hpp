@@ -3,7 +3,6 @@
 
 #include <atomic>
 #include <cstddef>
-#include <functional>
 #include <mutex>
 #include <vector>
 
@@ -15,15 +14,11 @@ namespace viapoint {
 /// of it at the last. One thread guides, the loop's thread is guided; neither waits for the other.
 class GuidingHand {
  public:
-  /// Takes hold of the arm in the next cycle.
+  /// Takes hold of the arm in the next cycle. Where a loop runs the arm: in its admit_hand().
   /// @param positions each (n,) [rad or m], the first one where the arm stands
   /// @throws MotionError(kBadArgument) for none; kBusy while the hand guides already
   /// Real-time: not. Threads: any.
   void guide(std::vector<JointVector> positions);
-  /// Waits until the loop has seen that the arm is guided, so that nothing is begun meanwhile; no
-  /// longer than the hand guides it, and a second at most. Real-time: not. Threads: any.
-  /// @param sees_it whether the loop has, as ControllerLoop::guided tells
-  void await(const std::function<bool()>& sees_it) const;
   /// Lets go of the arm in the next cycle. Real-time: safe. Threads: any.
   void let_go() noexcept { lets_go_.store(true, std::memory_order_release); }
   /// Real-time: safe. Threads: any.

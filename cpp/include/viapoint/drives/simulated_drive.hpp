@@ -41,6 +41,9 @@ class SimulatedDrive final : public Drive {
   [[nodiscard]] DriveStatus exchange(const Setpoint& setpoint,
                                      Measurement& measurement) noexcept override;
   void release() noexcept override;
+  [[nodiscard]] bool is_held() const noexcept override {
+    return hand_ != nullptr && hand_->guides();
+  }
 
  private:
   /// What the encoders read of the position.

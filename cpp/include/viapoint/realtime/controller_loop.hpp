@@ -161,6 +161,11 @@ class ControllerLoop {
   /// way, unless it rests after Job::pause(); kVelocityLimit; kBadArgument; kDriveFault. The
   /// override does not act on it.
   void jog(const JointVector& velocity);
+  /// Lets a hand take an arm at rest (Drive::is_held): no run, jog or other hand begins meanwhile.
+  /// @param take called, with what was measured last, when nothing moves the arm; it has to be
+  ///   quick, and what it throws refuses the hand
+  /// @throws MotionError(kBusy) while a run or a jog is under way; kDriveFault as require_power()
+  void admit_hand(const std::function<void(const Measurement&)>& take);
   /// True until a jog has come to rest; no run is admitted meanwhile.
   [[nodiscard]] bool jogging() const;
   /// What keeps the jog, or kept the last one, from doing what was wished; empty where nothing
@@ -186,8 +191,8 @@ class ControllerLoop {
   [[nodiscard]] std::vector<ObservedCycle> observed(std::uint64_t from, std::size_t most) const;
   /// What the drive last measured.
   [[nodiscard]] Measurement measured() const;
-  /// True while a hand moves the arm (DriveStatus::kGuided): the setpoint is where it is measured,
-  /// and runs and jogs are refused (kBusy).
+  /// True while a hand moves the arm (DriveStatus::kGuided), or is about to (Drive::is_held): the
+  /// setpoint is where it is measured, and runs and jogs are refused (kBusy). Never after a fault.
   [[nodiscard]] bool guided() const;
   [[nodiscard]] bool busy() const;
   /// Where the loop's set-point rests now.

@@ -42,6 +42,9 @@ class Drive {
   [[nodiscard]] virtual DriveStatus exchange(const Setpoint& setpoint,
                                              Measurement& measurement) noexcept = 0;
   virtual void release() noexcept = 0;
+  /// Whether a hand has hold of the arm, or will in the next cycle, as far as the drive knows
+  /// before exchange() says kGuided: nothing else is begun then. Threads: any. Real-time: not.
+  [[nodiscard]] virtual bool is_held() const noexcept { return false; }
   /// What went wrong, once exchange() has returned kFault or kPowerLost; it is not called again
   /// after that. Real-time: not.
   [[nodiscard]] virtual std::string fault() const { return "the drive reported a fault"; }

@@ -2,6 +2,7 @@
 /// The loop without a clock, for scripts that are tried before they move anything.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -32,6 +33,7 @@ class VirtualLoop {
   [[nodiscard]] std::shared_ptr<Job> run(std::shared_ptr<const Trajectory> trajectory);
   [[nodiscard]] std::shared_ptr<OpenJob> follow(std::shared_ptr<const Trajectory> first);
   void jog(const JointVector& velocity);
+  void admit_hand(const std::function<void(const Measurement&)>& take);
   [[nodiscard]] bool jogging() const;
   [[nodiscard]] std::string jog_block() const;
   void set_override(double share);

@@ -109,6 +109,10 @@ class ArmHost {
   void set_override(const std::string& token, double share);
   /// @throws MotionError of ControllerLoop::jog
   void jog(const std::string& token, const JointVector& velocity);
+  /// As ControllerLoop::admit_hand; who has control keeps it until `take` has come back, which asks
+  /// nothing of the host. @param take is told where the arm was measured last, (n,)
+  void admit_hand(const std::string& token,
+                  const std::function<void(const JointVector& measured)>& take);
 
   // For a panel beside the operator, which begins no motion and needs no token. While the loop is
   // built anew there is nothing to turn, and the last cycle is that of the loop before.
