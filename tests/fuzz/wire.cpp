@@ -26,6 +26,7 @@ JointLimits limits() { return testing::uniform_limits(kJoints, 3.0, 2.0, 20.0, 2
 void run(const v1::AddPiecesRequest& request) {
   auto motion = std::make_shared<const Trajectory>(controller::pieces_of(request.pieces(), kJoints),
                                                    limits());
+  promise(motion->duration() <= Trajectory::kMostDuration, "a motion without an end");
   const JointVector start = motion->at(0.0).q;
   VirtualLoop loop(std::make_unique<SimulatedDrive>(start), limits());
   const std::shared_ptr<Job> job = loop.run(motion);

@@ -16,6 +16,7 @@
 #include "planning/ways_out.hpp"
 #include "viapoint/core/number_text.hpp"
 #include "viapoint/core/units.hpp"
+#include "viapoint/trajectory/trajectory.hpp"
 
 namespace viapoint::planning {
 namespace {
@@ -84,9 +85,10 @@ class ItineraryWalk::Walk {
   }
 
   void operator()(const Wait& wait) {
-    if (!(wait.seconds >= 0.0) || !std::isfinite(wait.seconds)) {
+    if (!(wait.seconds >= 0.0 && wait.seconds <= Trajectory::kMostDuration)) {
       add(ErrorCode::kBadArgument,
-          "a wait of " + number_text(wait.seconds) + " s; it must be zero or more and finite",
+          "a wait of " + number_text(wait.seconds) + " s; allowed are 0 to " +
+              number_text(Trajectory::kMostDuration) + " s",
           {"give the wait in seconds, or leave it out"});
       return;
     }

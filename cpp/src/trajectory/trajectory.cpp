@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "trajectory/trajectory_piece_check.hpp"
+#include "viapoint/core/number_text.hpp"
 
 namespace viapoint {
 namespace {
@@ -18,6 +19,21 @@ void add(const TrajectoryPiece& piece, OutputEffect& effect) {
     effect.changed |= bit;
     effect.on = change.value ? effect.on | bit : effect.on & ~bit;
   }
+}
+
+/// @param seconds until the end of piece i
+[[noreturn]] void refuse_length(double seconds, size_t i, const TrajectoryPiece& piece) {
+  Problem problem;
+  problem.code = ErrorCode::kBadArgument;
+  problem.message = "the trajectory lasts " + number_text(seconds) +
+                    " s up to the end of its piece " + std::to_string(i) + "; allowed are up to " +
+                    number_text(Trajectory::kMostDuration) + " s";
+  problem.ways_out = {"run it as several programs, one after the other",
+                      "give speeds and waits nearer to what a machine does"};
+  problem.move = piece.move;
+  problem.value = seconds;
+  problem.limit = Trajectory::kMostDuration;
+  throw MotionError(problem);
 }
 
 /// Shorter than this share of a piece, what is left of it is rounding.
@@ -44,6 +60,7 @@ Trajectory::Trajectory(std::vector<TrajectoryPiece> pieces, const JointLimits& l
                         "piece " + std::to_string(i) + " of the trajectory " + *fault);
     }
     index(pieces_[i]);
+    if (duration_ > kMostDuration) refuse_length(duration_, i, pieces_[i]);
   }
   if (limits.joints() != joints) {
     throw MotionError(ErrorCode::kBadArgument, "the trajectory has " + std::to_string(joints) +

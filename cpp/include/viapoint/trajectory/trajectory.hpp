@@ -28,11 +28,16 @@ struct OutputEffect {
 /// Immutable once built. Threads: any.
 class Trajectory {
  public:
+  /// The longest motion [s], 30 000 years: beyond, doubles tell cycles no longer well apart, and
+  /// motion files hold no such number.
+  static constexpr double kMostDuration = 1e12;
+
   Trajectory() = default;
   /// Certifies against `limits`, from rest or from the state `from`. Limits that are broken do not
   /// throw: they are the certificate's problems.
   /// @throws MotionError(kBadArgument) for no pieces, and for a piece of differing joints, not
-  ///   finite, of no duration or with more outputs than it can hold; kBadLimits
+  ///   finite, of no duration or with more outputs than it can hold, and for more than
+  ///   kMostDuration; kBadLimits
   Trajectory(std::vector<TrajectoryPiece> pieces, const JointLimits& limits,
              const std::optional<JointState>& from = std::nullopt);
 
