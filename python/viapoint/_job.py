@@ -82,6 +82,8 @@ class RunReport:
 class Job:
     """One motion under way. Threads: any.
 
+    Once it has ended there is nothing left to pause, resume or stop: such a wish changes nothing.
+
     Attributes
     ----------
     motion : Motion

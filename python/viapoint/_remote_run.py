@@ -77,7 +77,16 @@ class RemoteExecution:
                 return False
             time.sleep(min(left, LOOK))
 
+    def _is_over(self) -> bool:
+        """Tell whether a wish comes too late: it then changes nothing, as in one process.
+
+        The controller would have it so, too, for as long as it keeps the run.
+        """
+        return self._end is not None and self._loop.has_control
+
     def _steer(self, wish: int) -> None:
+        if self._is_over():
+            return
         request = message("SteerRequest", token=self._loop.token, run=self.number, wish=wish)
         self._loop.call("Steer", request, "SteerReply")
 
@@ -103,6 +112,8 @@ class RemoteExecution:
 
     def on_input(self, index: int, value: bool, action: str) -> None:
         """Act on an input, in the cycle after it is so; none for -1."""
+        if self._is_over():
+            return
         self._loop.call(
             "OnInput",
             message(

@@ -1,16 +1,44 @@
-"""Runs of a controller that would never be over."""
+"""Runs of a controller that are over before they are told something, or would never be."""
 
 import numpy as np
 import pytest
 
 import viapoint as vp
 from viapoint._wire import message
-from viapoint.errors import BadArgumentError
+from viapoint.errors import BadArgumentError, NotInControlError
 
 
 @pytest.fixture
 def url(serve, abc):
     return serve(start=list(abc["A"])).url
+
+
+@pytest.mark.parametrize("away", [True, False])
+def test_wishes_of_a_run_that_has_ended_change_nothing(url, puma, abc, away):
+    with vp.connect(url) if away else vp.connect("sim://puma560", start=abc["A"]) as arm:
+        jobs = [
+            arm.run(vp.Program(puma, start=arm.setpoint).movej(abc["A"] + 0.02 * k))
+            for k in range(1, 4)  # of which the controller keeps two
+        ]
+        for job in jobs:
+            job.pause()
+            job.step()
+            job.backward()
+            job.on_input(3, True, "stop")
+            job.stop()
+            job.stop(1)
+            job.resume()
+            assert job.state == "finished"
+        rest = arm.setpoint
+        # The drive has kept its power, and the next run is one as any other.
+        assert arm.run(vp.Program(puma, start=rest).movej(rest + 0.02)).state == "finished"
+        if away:
+            with (
+                vp.connect(url, watch=True) as watcher,
+                pytest.raises(NotInControlError),
+            ):
+                watcher.job.stop()
+    jobs[0].pause()  # of an arm that is closed, too
 
 
 def test_a_motion_without_an_end_is_refused(url, puma):

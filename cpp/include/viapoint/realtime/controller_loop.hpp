@@ -68,7 +68,8 @@ class Progress {
   [[nodiscard]] virtual int move() const = 0;
 };
 
-/// One motion under way. All methods from any ordinary thread.
+/// One motion under way. All methods from any ordinary thread. Once it has ended there is nothing
+/// left to pause, resume or stop: such a wish changes nothing.
 class Job : public virtual Progress {
  public:
   /// True when the run ended within `timeout` [s]: when the drive has measured the cycle after the

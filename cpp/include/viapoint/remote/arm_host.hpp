@@ -96,6 +96,7 @@ class ArmHost {
   void close(const std::string& token, std::uint64_t run);
   /// @throws MotionError as lengthen()
   [[nodiscard]] HandOver hand_over(const std::string& token, std::uint64_t run);
+  /// As Job's; a run that has ended stays as it is.
   /// @throws MotionError(kBadArgument) for a run that is not kept
   void steer(const std::string& token, std::uint64_t run, Steering steering);
   /// As Job::on_input. @throws MotionError of that, and as steer()
