@@ -51,6 +51,7 @@ py::typing::Dict<py::str, py::int_> counts_of(const UdpTraffic& traffic) {
   counts["wrong_magic"] = traffic.wrong_magic.load();
   counts["wrong_version"] = traffic.wrong_version.load();
   counts["wrong_joints"] = traffic.wrong_joints.load();
+  counts["not_finite"] = traffic.not_finite.load();
   counts["old"] = traffic.old.load();
   return counts;
 }

@@ -77,6 +77,6 @@ class LocalArm(Arm):
         """What has become of the datagrams to and from a UDP device; empty for other arms.
 
         ``sent``, ``unsent``, ``answered``; ``silent`` cycles; and what was ignored: ``wrong_size``,
-        ``wrong_magic``, ``wrong_version``, ``wrong_joints``, ``old``.
+        ``wrong_magic``, ``wrong_version``, ``wrong_joints``, ``not_finite``, ``old``.
         """
         return self._own_loop.datagrams

@@ -189,6 +189,8 @@ void UdpDrive::count(udp::Flaw flaw) noexcept {
       return count_one(traffic_->wrong_version);
     case udp::Flaw::kJoints:
       return count_one(traffic_->wrong_joints);
+    case udp::Flaw::kNotFinite:
+      return count_one(traffic_->not_finite);
   }
 }
 
@@ -201,6 +203,7 @@ std::string UdpDrive::ignored() const {
          told(traffic_->wrong_magic, "were none of this protocol") +
          told(traffic_->wrong_version, "were of another version") +
          told(traffic_->wrong_joints, "were for another number of joints") +
+         told(traffic_->not_finite, "told a joint that is infinite or no number") +
          told(traffic_->old, "were old");
 }
 

@@ -63,9 +63,11 @@ class Reader {
     bytes_ = bytes_.subspan(sizeof(Unsigned));
     return value;
   }
-  void take(int joints, JointVector& values) noexcept {
+  /// Flaw::kNotFinite where one of them is no place to be: nothing that follows could bear it.
+  Flaw take(int joints, JointVector& values) noexcept {
     values.resize(joints);
     for (double& value : values) value = std::bit_cast<double>(take<std::uint64_t>());
+    return values.allFinite() ? Flaw::kNone : Flaw::kNotFinite;
   }
 
  private:
@@ -107,9 +109,8 @@ Flaw decode(std::span<const std::uint8_t> bytes, int joints, Command& command) n
   command.sequence = reader.take<std::uint64_t>();
   command.stamp = static_cast<std::int64_t>(reader.take<std::uint64_t>());
   command.outputs = reader.take<std::uint64_t>();
-  reader.take(joints, command.q);
-  reader.take(joints, command.qd);
-  return Flaw::kNone;
+  if (const Flaw flaw = reader.take(joints, command.q); flaw != Flaw::kNone) return flaw;
+  return reader.take(joints, command.qd);
 }
 
 Flaw decode(std::span<const std::uint8_t> bytes, int joints, Answer& answer) noexcept {
@@ -122,8 +123,7 @@ Flaw decode(std::span<const std::uint8_t> bytes, int joints, Answer& answer) noe
   answer.inputs = reader.take<std::uint64_t>();
   answer.fault_code = reader.take<std::uint32_t>();
   reader.take<std::uint32_t>();
-  reader.take(joints, answer.q);
-  return Flaw::kNone;
+  return reader.take(joints, answer.q);
 }
 
 }  // namespace viapoint::udp

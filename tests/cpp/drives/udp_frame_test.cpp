@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <random>
 
 namespace viapoint {
@@ -79,6 +80,28 @@ TEST(UdpFrame, NamesWhatIsWrong) {
   EXPECT_EQ(flaw(size), Flaw::kMagic);
   udp::Command command;
   EXPECT_EQ(udp::decode({datagram.data(), size}, 2, command), Flaw::kMagic);
+}
+
+TEST(UdpFrame, TakesNoNumberThatIsNotFinite) {
+  udp::Datagram datagram{};
+  for (const double bad :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
+        -std::numeric_limits<double>::infinity()}) {
+    for (const Eigen::Index joint : {0, 1}) {
+      udp::Answer answer;
+      answer.q = JointVector::Zero(2);
+      answer.q[joint] = bad;
+      std::size_t size = udp::encode(answer, datagram);
+      EXPECT_EQ(udp::decode({datagram.data(), size}, 2, answer), Flaw::kNotFinite) << bad;
+
+      for (JointVector udp::Command::* values : {&udp::Command::q, &udp::Command::qd}) {
+        udp::Command command = some_command();
+        (command.*values)[joint] = bad;
+        size = udp::encode(command, datagram);
+        EXPECT_EQ(udp::decode({datagram.data(), size}, 2, command), Flaw::kNotFinite) << bad;
+      }
+    }
+  }
 }
 
 TEST(UdpFrame, ReadsAnyBytesWithoutHarm) {

@@ -25,7 +25,8 @@ struct UdpTraffic {
   Count wrong_magic{0};
   Count wrong_version{0};
   Count wrong_joints{0};
-  Count old{0};  ///< not newer than the answer before, or to a command that was never sent
+  Count not_finite{0};  ///< a joint is infinite or no number
+  Count old{0};         ///< not newer than the answer before, or to a command that was never sent
 };
 
 /// Where the device is.

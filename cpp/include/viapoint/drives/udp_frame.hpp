@@ -52,7 +52,14 @@ struct Answer {
 using Datagram = std::array<std::uint8_t, 32 + 16 * kMaxJoints + 1>;
 
 /// Why a datagram is none.
-enum class Flaw : std::uint8_t { kNone, kSize, kMagic, kVersion, kJoints };
+enum class Flaw : std::uint8_t {
+  kNone,
+  kSize,
+  kMagic,
+  kVersion,
+  kJoints,
+  kNotFinite  ///< a joint is infinite or no number
+};
 
 /// Returns how many bytes of `datagram` it takes. Real-time: safe.
 std::size_t encode(const Command& command, Datagram& datagram) noexcept;
