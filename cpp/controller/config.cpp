@@ -52,10 +52,10 @@ std::pair<std::string, int> read_address(const YamlValue& value) {
 }
 
 void read_workspace(const YamlValue& value, GuardOptions& guard) {
-  YamlMap map(value);
+  YamlMap map(value, {"min", "max"});
   const std::vector<double> least = map.at("min", "min: [x, y, z]").numbers(3);
   const std::vector<double> most = map.at("max", "max: [x, y, z]").numbers(3);
-  map.finish({"min", "max"});
+  map.finish();
   for (int i = 0; i < 3; ++i) {
     const auto axis = static_cast<size_t>(i);
     if (!(least[axis] < most[axis])) value.refuse("max must be beyond min on every axis");
@@ -65,12 +65,12 @@ void read_workspace(const YamlValue& value, GuardOptions& guard) {
 }
 
 TlsFiles read_tls(const YamlValue& value) {
-  YamlMap map(value);
+  YamlMap map(value, {"authority", "certificate", "key"});
   TlsFiles files;
   files.authority = map.at("authority", "authority: FILE, who signs clients").text();
   files.certificate = map.at("certificate", "certificate: FILE, the controller's own").text();
   files.key = map.at("key", "key: FILE, to the certificate").text();
-  map.finish({"authority", "certificate", "key"});
+  map.finish();
   return files;
 }
 
@@ -79,7 +79,7 @@ bool is_this_machine(const std::string& address) {
 }
 
 RtdeAddress read_rtde(const YamlValue& value) {
-  YamlMap map(value);
+  YamlMap map(value, {"port", "address", "other_machines"});
   RtdeAddress rtde;
   if (map.has("port")) {
     const double port = number_in(map.at("port"), 0.0, 65535.0, "");
@@ -108,13 +108,13 @@ RtdeAddress read_rtde(const YamlValue& value) {
           {"serve it on 127.0.0.1", "give \"other_machines: allowed\" where the network is yours"});
     }
   }
-  map.finish({"port", "address", "other_machines"});
+  map.finish();
   return rtde;
 }
 
 SimulatedDriveOptions read_simulated(const YamlValue& value) {
   constexpr double kMostLag = 10.0, kMostError = 1.0;
-  YamlMap map(value);
+  YamlMap map(value, {"lag", "resolution", "noise", "seed"});
   SimulatedDriveOptions options;
   if (map.has("lag")) options.lag = number_in(map.at("lag"), 0.0, kMostLag, "s");
   if (map.has("resolution")) {
@@ -126,7 +126,7 @@ SimulatedDriveOptions read_simulated(const YamlValue& value) {
     if (seed < 0) map.at("seed").refuse("is " + std::to_string(seed) + "; it must be 0 or more");
     options.seed = static_cast<std::uint64_t>(seed);
   }
-  map.finish({"lag", "resolution", "noise", "seed"});
+  map.finish();
   return options;
 }
 
@@ -149,11 +149,13 @@ void read_drive(const YamlValue& value, Config& config) {
     if (drive != "simulated") value.refuse("\"" + drive + "\" is no drive", ways);
     return;
   }
-  YamlMap map(value);
-  if (map.has("simulated") == map.has("udp")) value.refuse("is no drive", ways);
-  if (map.has("simulated")) {
+  using Keys = std::vector<std::string>;
+  const bool is_device = value.node()["udp"].IsDefined();
+  YamlMap map(value, is_device ? Keys{"udp", "silent_cycles"} : Keys{"simulated"});
+  if (map.has("simulated") == is_device) value.refuse("is no drive", ways);
+  if (!is_device) {
     config.simulated = read_simulated(map.at("simulated"));
-    map.finish({"simulated"});
+    map.finish();
     return;
   }
   constexpr int kMostSilence = 10'000;
@@ -167,7 +169,7 @@ void read_drive(const YamlValue& value, Config& config) {
     }
     config.guard.silent_cycles = silent;
   }
-  map.finish({"udp", "silent_cycles"});
+  map.finish();
 }
 
 void read_start(const YamlValue& value, Config& config) {
@@ -212,6 +214,10 @@ void check_heartbeat(YamlMap& map, const Config& config) {
               {"give a longer \"heartbeat\", or a shorter \"cycle\""});
 }
 
+const std::vector<std::string> kKeys{"robot",     "drive",      "start",     "listen", "cycle",
+                                     "heartbeat", "tool_speed", "workspace", "tls",    "logs",
+                                     "rtde",      "processor",  "keep_awake"};
+
 Config read(YamlMap map) {
   Config config;
   config.robot = map.at("robot", "robot: puma560").text();
@@ -239,8 +245,7 @@ Config read(YamlMap map) {
           {"listen on 127.0.0.1 or [::1]", "give \"tls\": authority, certificate and key"});
     }
   }
-  map.finish({"robot", "drive", "start", "listen", "cycle", "heartbeat", "tool_speed", "workspace",
-              "tls", "logs", "rtde", "processor", "keep_awake"});
+  map.finish();
   return config;
 }
 
@@ -278,7 +283,7 @@ Config config_from_yaml(const std::string& text, const std::string& source) {
     if (documents.count != 1) {
       refuse_file(source, "holds " + std::to_string(documents.count) + " documents, not one");
     }
-    Config config = read(YamlMap(YamlValue(documents.first, source, "")));
+    Config config = read(YamlMap(YamlValue(documents.first, source, ""), kKeys));
     resolve_names(config, std::filesystem::path(source).parent_path());
     return config;
   } catch (const YAML::Exception& error) {

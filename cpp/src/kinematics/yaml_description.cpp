@@ -60,8 +60,8 @@ Pose shift(double x, double y, double z) { return Pose(Eigen::Translation3d(x, y
 
 /// {xyz: [...], rpy: [...]} (fixed axes x, y, z in turn) or {xyz: [...], rotation: [9 by rows]}.
 Pose read_pose(const YamlValue& value, double angle) {
-  YamlMap map(value);
-  map.finish({"xyz", "rpy", "rotation"});
+  YamlMap map(value, {"xyz", "rpy", "rotation"});
+  map.finish();
   Pose pose = Pose::Identity();
   if (map.has("rpy") && map.has("rotation")) value.refuse("give rpy or rotation, not both");
   if (map.has("rpy")) {
@@ -94,10 +94,11 @@ Pose read_pose(const YamlValue& value, double angle) {
 
 class Reader {
  public:
-  Reader(const YAML::Node& root, const std::string& source) : top_(YamlValue(root, source, "")) {}
+  Reader(const YAML::Node& root, const std::string& source)
+      : top_(YamlValue(root, source, ""), kTopKeys) {}
 
   RobotDescription read() {
-    top_.finish(kTopKeys);
+    top_.finish();
     require_joints_last();
     out_.name = top_.at("name", "a line \"name: my_arm\"").text();
     if (out_.name.empty()) top_.at("name").refuse("expected a name, got nothing");
@@ -119,8 +120,9 @@ class Reader {
 
  private:
   void read_units() {
-    YamlMap units(top_.at("units", "\"units: {angle: deg}\" or \"units: {angle: rad}\""));
-    units.finish({"angle"});
+    YamlMap units(top_.at("units", "\"units: {angle: deg}\" or \"units: {angle: rad}\""),
+                  {"angle"});
+    units.finish();
     const YamlValue angle = units.at("angle", "\"angle: deg\" or \"angle: rad\"");
     if (angle.text() == "deg") {
       angle_ = kDegree;
@@ -189,8 +191,7 @@ class Reader {
   }
 
   void read_joint(const YamlValue& value, Eigen::Index i) {
-    YamlMap joint(value);
-    if (value.node().Style() != YAML::EmitterStyle::Flow) {
+    if (value.node().IsMap() && value.node().Style() != YAML::EmitterStyle::Flow) {
       value.refuse("a joint stands in braces",
                    {"write it as {name: ..., position: [...], ...}; so a file cut short is always "
                     "found out"});
@@ -200,7 +201,8 @@ class Reader {
     if (form_ == Form::kStandard || form_ == Form::kModified) {
       keys.insert(keys.end(), {"d", "a", "alpha", "theta"});
     }
-    joint.finish(keys);
+    YamlMap joint(value, std::move(keys));
+    joint.finish();
     const std::string name = joint.at("name", "a name for this joint").text();
     if (std::find(out_.joint_names.begin(), out_.joint_names.end(), name) !=
         out_.joint_names.end()) {
@@ -308,8 +310,8 @@ class Reader {
   /// that holds only among revolute joints, so with prismatic ones the file must be in rad.
   void read_coupling() {
     const YamlValue value = top_.at("coupling");
-    YamlMap map(value);
-    map.finish({"matrix", "lower", "upper"});
+    YamlMap map(value, {"matrix", "lower", "upper"});
+    map.finish();
     const int joints = out_.limits.joints();
     const bool slides = std::any_of(out_.chain.begin(), out_.chain.end(), [](const auto& joint) {
       return joint.type == JointType::kPrismatic;

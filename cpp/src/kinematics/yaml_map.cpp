@@ -105,7 +105,8 @@ std::vector<std::string> YamlValue::texts() const {
   return out;
 }
 
-YamlMap::YamlMap(const YamlValue& value) : value_(value) {
+YamlMap::YamlMap(const YamlValue& value, std::vector<std::string> known)
+    : value_(value), known_(std::move(known)) {
   if (!value.node().IsMap()) value.refuse("expected keys and values, got " + kind_of(value.node()));
   std::set<std::string> seen;
   for (const auto& entry : value.node()) {
@@ -118,6 +119,10 @@ std::string YamlMap::path_of(const std::string& key) const {
   return value_.path().empty() ? key : value_.path() + "." + key;
 }
 
+bool YamlMap::knows(const std::string& key) const {
+  return std::find(known_.begin(), known_.end(), key) != known_.end();
+}
+
 bool YamlMap::has(const std::string& key) const { return value_.node()[key].IsDefined(); }
 
 YamlValue YamlMap::at(const std::string& key, const std::string& add, ErrorCode code) {
@@ -125,7 +130,7 @@ YamlValue YamlMap::at(const std::string& key, const std::string& add, ErrorCode 
   if (!node.IsDefined()) {
     for (const auto& entry : value_.node()) {
       const YamlValue other(entry.first, value_.source(), value_.path());
-      if (!is_slip(other.text(), key)) continue;
+      if (knows(other.text()) || !is_slip(other.text(), key)) continue;
       other.refuse("key \"" + key + "\" is missing, there is \"" + other.text() + "\"",
                    {"write \"" + key + "\" for \"" + other.text() + "\"", "add " + add}, code);
     }
@@ -134,13 +139,13 @@ YamlValue YamlMap::at(const std::string& key, const std::string& add, ErrorCode 
   return {node, value_.source(), path_of(key)};
 }
 
-void YamlMap::finish(const std::vector<std::string>& known) const {
+void YamlMap::finish() const {
   for (const auto& entry : value_.node()) {
     const YamlValue key(entry.first, value_.source(), value_.path());
-    if (std::find(known.begin(), known.end(), key.text()) != known.end()) continue;
+    if (knows(key.text())) continue;
     std::vector<std::string> ways_out;
     std::string list;
-    for (const std::string& name : known) {
+    for (const std::string& name : known_) {
       list += (list.empty() ? "" : ", ") + name;
       if (is_slip(key.text(), name)) ways_out.push_back("write \"" + name + "\"");
     }

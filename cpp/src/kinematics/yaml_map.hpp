@@ -42,7 +42,8 @@ class YamlValue {
 
 class YamlMap {
  public:
-  explicit YamlMap(const YamlValue& value);
+  /// @param known the keys that may be there: another one is a slip of the pen, or nobody's
+  YamlMap(const YamlValue& value, std::vector<std::string> known);
 
   [[nodiscard]] bool has(const std::string& key) const;
   /// The value of a key that must be there; `add` says what to write when it is not.
@@ -50,14 +51,16 @@ class YamlMap {
                              ErrorCode code = ErrorCode::kBadRobot);
   /// @pre has(key)
   [[nodiscard]] YamlValue at(const std::string& key) { return at(key, ""); }
-  /// Refuses every key that nobody asked for.
-  void finish(const std::vector<std::string>& known) const;
+  /// Refuses every key that is not known.
+  void finish() const;
   [[nodiscard]] const YamlValue& value() const { return value_; }
 
  private:
   [[nodiscard]] std::string path_of(const std::string& key) const;
+  [[nodiscard]] bool knows(const std::string& key) const;
 
   YamlValue value_;
+  std::vector<std::string> known_;
 };
 
 }  // namespace viapoint
