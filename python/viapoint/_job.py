@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from typing import Literal, Protocol
 
 from . import _core, _session
-from ._arguments import choice, integer, number
+from ._arguments import choice, number
 from ._motion import CYCLE, Motion
 from ._run_log import RunLog
-from ._steps import INPUTS
+from ._signals import on_or_off, signal
 from .errors import BadArgumentError, DriveFaultError, InputTimeoutError, NotInControlError
 
 ENDED = ("finished", "stopped", "fault")
@@ -263,11 +263,8 @@ class Job:
         NotInControlError
             Of an arm in another process: control was lost.
         """
-        number = integer(index, "index", 0, INPUTS - 1)
-        if not isinstance(value, bool):
-            raise BadArgumentError(f"value is {value!r}; an input is True or False.")
         wished = choice(action, "action", ("pause", "resume", "stop"))
-        self._execution.on_input(number, value, wished)
+        self._execution.on_input(signal(index), on_or_off(value, "input"), wished)
 
     @property
     def log(self) -> RunLog:

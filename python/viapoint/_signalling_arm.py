@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from ._arguments import integer
 from ._loop import Loop
-from ._steps import INPUTS, OUTPUTS
-from .errors import BadArgumentError
+from ._signals import on_or_off, signal
 
 
 class SignallingArm:
@@ -26,8 +24,7 @@ class SignallingArm:
         BadArgumentError
             Another index.
         """
-        bit = integer(index, "index", 0, INPUTS - 1)
-        return bool(self._loop.inputs >> bit & 1)
+        return bool(1 << signal(index) & self._loop.inputs)
 
     def set_input(self, index: int, value: bool) -> None:
         """Switch a digital input of the simulated drive.
@@ -46,10 +43,8 @@ class SignallingArm:
         BusyError
             The drive is a real one.
         """
-        bit = 1 << integer(index, "index", 0, INPUTS - 1)
-        if not isinstance(value, bool):
-            raise BadArgumentError(f"value is {value!r}; an input is True or False.")
-        self._loop.set_inputs(bit, bit if value else 0)
+        bit = 1 << signal(index)
+        self._loop.set_inputs(bit, bit if on_or_off(value, "input") else 0)
 
     def output(self, index: int) -> bool:
         """Return what the drive was last told of a digital output.
@@ -64,8 +59,7 @@ class SignallingArm:
         BadArgumentError
             Another index.
         """
-        bit = integer(index, "index", 0, OUTPUTS - 1)
-        return bool(self._loop.outputs >> bit & 1)
+        return bool(1 << signal(index) & self._loop.outputs)
 
     def set_output(self, index: int, value: bool) -> None:
         """Switch a digital output by hand from the next cycle on, at rest, in motion or guided.
@@ -86,7 +80,5 @@ class SignallingArm:
         DriveFaultError
             The arm has failed, or its drive was released: nothing is told it any more.
         """
-        bit = 1 << integer(index, "index", 0, OUTPUTS - 1)
-        if not isinstance(value, bool):
-            raise BadArgumentError(f"value is {value!r}; an output is True or False.")
-        self._loop.switch_outputs(bit, bit if value else 0)
+        bit = 1 << signal(index)
+        self._loop.switch_outputs(bit, bit if on_or_off(value, "output") else 0)

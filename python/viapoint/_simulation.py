@@ -7,13 +7,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from . import _core
-from ._arguments import ArrayLike, Vector, choice, integer, number, vector
+from ._arguments import ArrayLike, Vector, choice, number, vector
 from ._motion import CYCLE, Motion
 from ._program import Program, motion_of
 from ._robot import Robot
 from ._run_log import RunLog
 from ._samples import Samples
-from ._steps import INPUTS
+from ._signals import on_or_off, signal
 from .errors import BadArgumentError
 
 COMMANDS = ("override", "pause", "resume", "step", "backward", "jog", "stop", "input")
@@ -142,10 +142,8 @@ def _command(command: Command, name: str, joints: int) -> tuple[float, str, Vect
             '"input" an input and its value, the others nothing.'
         )
     if word == "input":
-        index = integer(rest[0], f"{name}[2]", 0, INPUTS - 1)
-        if not isinstance(rest[1], bool):
-            raise BadArgumentError(f"{name}[3] is {rest[1]!r}; an input is True or False.")
-        return seconds, word, np.array([index, rest[1]], dtype=float)
+        told = signal(rest[0], f"{name}[2]"), on_or_off(rest[1], "input", f"{name}[3]")
+        return seconds, word, np.array(told, dtype=float)
     if word == "jog":
         return seconds, word, vector(rest[0], f"{name}[2]", joints)
     share = [number(rest[0], f"{name}[2]", least=0.0, most=1.0)] if rest else []

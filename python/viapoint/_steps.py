@@ -6,16 +6,14 @@ from collections.abc import Sequence
 from typing import Literal, Self, Unpack
 
 from . import _core
-from ._arguments import ArrayLike, choice, integer, number
+from ._arguments import ArrayLike, choice, number
 from ._curve_steps import CurveSteps
+from ._signals import on_or_off, signal
 from ._source import caller
 from ._wishes import Wishes
 from ._zone import ZoneLike
 from .errors import BadArgumentError
 from .frames import Frame, Tool, frame_of, tool_of
-
-INPUTS = 64
-OUTPUTS = 64
 
 
 class Steps(CurveSteps):
@@ -170,11 +168,9 @@ class Steps(CurveSteps):
         BadArgumentError
             Another index, a value that is not a bool, or a time-out that is not above 0.
         """
-        number_of_input = integer(index, "index", 0, INPUTS - 1)
-        if not isinstance(value, bool):
-            raise BadArgumentError(f"value is {value!r}; an input is True or False.")
+        number_of_input, awaited = signal(index), on_or_off(value, "input")
         longest = None if timeout is None else number(timeout, "timeout", "s", above=0.0)
-        self._core.add_wait_di(number_of_input, value, longest, *caller())
+        self._core.add_wait_di(number_of_input, awaited, longest, *caller())
         return self
 
     def set_do(self, index: int, value: bool, *, distance: float = 0.0, time: float = 0.0) -> Self:
@@ -202,13 +198,11 @@ class Steps(CurveSteps):
             distance longer than the move, and for changes of one output that would come in another
             order than they are told in.
         """
-        output = integer(index, "index", 0, OUTPUTS - 1)
-        if not isinstance(value, bool):
-            raise BadArgumentError(f"value is {value!r}; an output is True or False.")
+        output, switched = signal(index), on_or_off(value, "output")
         way = number(distance, "distance", "m")
         most = _core.MOST_OUTPUT_TIME
         seconds = number(time, "time", "s", least=-most, most=most)
-        self._core.add_set_do(output, value, way, seconds, *caller())
+        self._core.add_set_do(output, switched, way, seconds, *caller())
         return self
 
     def timed(

@@ -16,11 +16,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ._arguments import ArrayLike, Vector, integer, number, pose
+from ._signals import signal
 from .errors import BadArgumentError
 
 __all__ = ["Gripper", "lifted", "on_feeder", "stacked"]
-
-_OUTPUTS = 64
 
 
 @dataclass(frozen=True)
@@ -48,7 +47,7 @@ class Gripper:
 
     def __post_init__(self) -> None:
         """Check the arguments."""
-        integer(self.output, "output", 0, _OUTPUTS - 1)
+        signal(self.output, "output")
         number(self.dwell, "dwell", "s", least=0.0)
         if not isinstance(self.closed, bool):
             raise BadArgumentError(f"closed is {self.closed!r}; it must be True or False.")
