@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -28,6 +28,8 @@ class Leg:
     ----------
     move : int
         The program's step.
+    order : int
+        Its place among the moves of the run that go somewhere, from 0.
     speed : float or None
         That it keeps [m/s]; None where it changes.
     begin, end : ndarray, (3,)
@@ -37,6 +39,7 @@ class Leg:
     """
 
     move: int
+    order: int
     speed: float | None
     begin: Vector
     end: Vector
@@ -60,11 +63,19 @@ def middle_half(run: Attained, move: int) -> npt.NDArray[np.intp]:
     return middle
 
 
+def _goes_somewhere(run: Attained, move: int) -> bool:
+    """Tell a move, short as it may be, from a rest."""
+    rows = np.flatnonzero(run.move == move)
+    return bool(run.along[rows[-1]] - run.along[max(rows[0] - 1, 0)] > _STRAIGHT)
+
+
 def legs_of(run: Attained) -> list[Leg]:
     """Return the moves of a run that are long enough to be judged, in order."""
-    legs = []
+    legs: list[Leg] = []
+    order = -1
     _, first = np.unique(run.move, return_index=True)
     for move in run.move[np.sort(first)].tolist():
+        order += _goes_somewhere(run, move)
         rows = middle_half(run, move)
         places = run.told[rows, :3, 3]
         if len(rows) < _FEWEST or np.linalg.norm(places[-1] - places[0]) < 10.0 * _STRAIGHT:
@@ -73,6 +84,7 @@ def legs_of(run: Attained) -> list[Leg]:
         usual = float(np.median(speeds))
         leg = Leg(
             move=move,
+            order=order,
             speed=usual if np.ptp(speeds) <= _EVEN * usual else None,
             begin=places[0],
             end=places[-1],
@@ -81,13 +93,16 @@ def legs_of(run: Attained) -> list[Leg]:
         off = places - leg.begin
         aside = off - (off @ leg.direction)[:, None] * leg.direction
         straight = bool(np.linalg.norm(aside, axis=1).max() <= _STRAIGHT)
-        legs.append(Leg(leg.move, leg.speed, leg.begin, leg.end, straight))
+        legs.append(replace(leg, is_straight=straight))
     return legs
 
 
 def corner_of(first: Leg, second: Leg) -> Vector | None:
-    """Where the lines of two straight legs meet, (3,); None where they do not."""
-    if not (first.is_straight and second.is_straight):
+    """Where the lines of two straight legs meet, (3,); None where they do not.
+
+    Nor do they where the arm moves otherwise between them, be it for a moment.
+    """
+    if second.order != first.order + 1 or not (first.is_straight and second.is_straight):
         return None
     normal = np.cross(first.direction, second.direction)
     if np.linalg.norm(normal) < np.sin(np.radians(1.0)):

@@ -8,6 +8,8 @@ from typer.testing import CliRunner
 
 import viapoint as vp
 from viapoint import cli, errors, iso9283
+from viapoint._attained import Attained
+from viapoint._legs import legs_of
 from viapoint._rotation_vectors import rotations_of
 
 
@@ -273,6 +275,42 @@ def test_speeds_and_corners_of_a_program_are_found_in_its_logs():
     report = iso9283.from_logs([slow])
     assert report.speeds[0].accuracy == pytest.approx(-0.05, rel=0.02)
     assert report.speeds[1].accuracy == pytest.approx(0.0, abs=3e-3)
+
+
+def run_along(*stretches):
+    """Return a run through the places of stretches (move, from, to, rows)."""
+    places = np.vstack([np.linspace(begin, end, rows) for _, begin, end, rows in stretches])
+    told = np.tile(np.eye(4), (len(places), 1, 1))
+    told[:, :3, 3] = places
+    steps = np.linalg.norm(np.diff(places, axis=0), axis=1)
+    return Attained(
+        name="logs[0]",
+        told=told,
+        reached=told,
+        resting=np.zeros(len(places), dtype=bool),
+        along=np.concatenate([[0.0], np.cumsum(steps)]),
+        time=0.002 * np.arange(len(places)),
+        move=np.repeat([move for move, *_ in stretches], [rows for *_, rows in stretches]),
+        period=0.002,
+    )
+
+
+def test_lines_meet_in_a_corner_only_where_one_follows_the_other():
+    """Between two lines at a right angle: nothing; a wait; a chamfer that is soon over."""
+    corner = np.array([0.0, 0.1, 0.0])
+    lines = [(0, [0, 0, 0], corner, 100), (3, corner, [0.1, 0.1, 0], 100)]
+    wait = (2, corner, corner, 50)
+    for run in (run_along(*lines), run_along(lines[0], wait, lines[1])):
+        (found,) = iso9283._corners([run], legs_of(run))
+        assert found.moves == (0, 3)
+        np.testing.assert_allclose(found.place, corner, atol=1e-12)
+    aside = np.array([0.003, 0.0, 0.0]), np.array([0.0, 0.003, 0.0])
+    before, after = corner - aside[1], corner + aside[0]
+    chamfered = run_along(
+        (0, [0, 0, 0], before, 100), (2, before, after, 8), (3, after, [0.1, 0.1, 0], 100)
+    )
+    assert [leg.move for leg in legs_of(chamfered)] == [0, 3]
+    assert list(iso9283._corners([chamfered], legs_of(chamfered))) == []
 
 
 def test_a_slow_creep_is_no_rest_and_a_reversal_neither(log):
