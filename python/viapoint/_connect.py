@@ -147,6 +147,7 @@ def connect(
     if drive is not None and not isinstance(drive, SimulatedDrive):
         raise BadArgumentError(f"drive is {drive!r}; it must be a SimulatedDrive.")
     silence = integer(10 if silent_cycles is None else silent_cycles, "silent_cycles", 0, 10_000)
+    kept_on = None if processor is None else integer(processor, "processor", 0, 4095)
     virtual = _session.current().virtual
     if parts.scheme == "udp":
         if robot is None:
@@ -186,7 +187,7 @@ def connect(
         tool_speed=speed,
         box_min=low,
         box_max=high,
-        processor=None if processor is None else integer(processor, "processor", 0, 4095),
+        processor=kept_on,
     )
     return LocalArm(arm_robot, core, period)
 

@@ -124,6 +124,18 @@ def test_a_bad_cycle_is_refused(cycle):
         vp.connect("sim://puma560", cycle=cycle)
 
 
+@pytest.mark.parametrize("processor", [-1, 4096, 0.5, "all"])
+def test_a_bad_processor_is_refused_as_on_the_clock(processor):
+    with pytest.raises(errors.BadArgumentError, match="processor") as in_virtual_time:
+        vp.connect("sim://puma560", processor=processor)
+    with (
+        _session.use(_session.Session()),
+        pytest.raises(errors.BadArgumentError, match="processor") as on_the_clock,
+    ):
+        vp.connect("sim://puma560", processor=processor)
+    assert in_virtual_time.value.message == on_the_clock.value.message
+
+
 def test_a_script_that_jogs_until_a_limit_is_met_comes_to_its_end():
     with vp.connect("sim://two_link") as arm:
         limit = arm.robot.limits.position_max[0]
