@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
 from . import _core
-from ._proven import Proven, Tools, tools_of
+from ._proven import Proven, ToldTools, Tools
 from ._report import Report
 
 if TYPE_CHECKING:
@@ -46,16 +46,12 @@ class Chunk(Proven):
 def chunks_of(program: Program, moves: Iterable[object]) -> Iterator[Chunk]:
     """Plan what a program holds, and what `moves` adds to it, while it is added."""
     kept = told = len(program)
-    tools = tools_of(program._core, program.robot)
+    tools = ToldTools(program._core, program.robot)
     stream = _core.Stream(program.robot._core, program._core)
     yield from _ready(stream, program, tools)
     for _ in moves:
         # The steps are counted on, though they are taken out of the program.
-        tools += tuple(
-            (told + step - kept, arm)
-            for step, arm in tools_of(program._core, program.robot)
-            if step >= kept
-        )
+        tools.add(program._core, kept, told)
         told += len(program) - kept
         stream.take(program._core, kept)
         yield from _ready(stream, program, tools)
@@ -64,6 +60,6 @@ def chunks_of(program: Program, moves: Iterable[object]) -> Iterator[Chunk]:
     yield from _ready(stream, program, tools)
 
 
-def _ready(stream: _core.Stream, program: Program, tools: Tools) -> Iterator[Chunk]:
+def _ready(stream: _core.Stream, program: Program, tools: ToldTools) -> Iterator[Chunk]:
     while (core := stream.next()) is not None:
-        yield Chunk(core, program, tools)
+        yield Chunk(core, program, tools.changes)

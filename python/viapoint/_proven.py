@@ -26,6 +26,46 @@ def tools_of(told: _core.MotionProgram, robot: Robot) -> Tools:
     )
 
 
+class ToldTools:
+    """The tools of steps that are told without end: one arm for each that is different.
+
+    Parameters
+    ----------
+    told : MotionProgram
+        The steps so far.
+    robot : Robot
+        The arm with its own tool.
+    """
+
+    def __init__(self, told: _core.MotionProgram, robot: Robot) -> None:
+        self._robot = robot
+        self._arms: dict[bytes, Robot] = {}
+        self._present = robot
+        self._changes: list[tuple[int, Robot]] = []
+        self.add(told, 0, 0)
+
+    def add(self, told: _core.MotionProgram, kept: int, first: int) -> None:
+        """Take what follows the `kept` steps of `told`: steps from `first` on of all."""
+        for step, tool in told.tools():
+            if step < kept:
+                continue
+            arm = self._robot if tool is None else self._arm(tool)
+            if arm is not self._present:
+                self._changes.append((first + step - kept, arm))
+            self._present = arm
+
+    def _arm(self, tool: Vector) -> Robot:
+        key = tool.tobytes()
+        if key not in self._arms:
+            self._arms[key] = self._robot.with_tool(tool)
+        return self._arms[key]
+
+    @property
+    def changes(self) -> Tools:
+        """From which step on the arm moves another tool, and the arm with that tool."""
+        return tuple(self._changes)
+
+
 class Proven:
     """Finished, immutable and proven. Threads: any, at once.
 

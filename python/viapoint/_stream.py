@@ -14,7 +14,7 @@ from . import _core, _session
 from ._arguments import ArrayLike
 from ._job import ENDED, Execution
 from ._program import Program, ProgramOptions
-from ._proven import Tools, tools_of
+from ._proven import ToldTools, Tools
 from ._report import Report
 from ._robot import Robot
 from ._stream_job import LateStep, StreamJob
@@ -79,7 +79,7 @@ class Stream(Program):
         self._ahead = ahead
         self._kept = len(self)
         self._told = self._kept
-        self._tools: Tools = tools_of(self._core, robot)
+        self._tools = ToldTools(self._core, robot)
         if isinstance(loop, VirtualLoop):
             self._stream = _core.MotionStream(loop.core, robot._core, self._core, margin=5 * period)
         elif isinstance(loop, _core.ControllerLoop):
@@ -158,7 +158,7 @@ class Stream(Program):
     @property
     def tools(self) -> Tools:
         """From which step on the arm moves another tool, and the arm with that tool."""
-        return self._tools
+        return self._tools.changes
 
     @property
     def steps_ahead(self) -> int:
@@ -282,11 +282,7 @@ class Stream(Program):
 
     def _hand_on(self) -> None:
         """Hand on what a builder has added."""
-        self._tools += tuple(
-            (self._told + step - self._kept, arm)
-            for step, arm in tools_of(self._core, self.robot)
-            if step >= self._kept
-        )
+        self._tools.add(self._core, self._kept, self._told)
         self._told += len(self) - self._kept
         self._stream.take(self._core, self._kept)
 

@@ -23,6 +23,25 @@ def in_virtual_time():
         yield
 
 
+def test_a_stream_that_changes_tools_again_and_again_keeps_each_once(in_virtual_time):
+    robot = vp.load_robot("ur5e")
+    home = np.radians([0, -90, 90, -90, -90, 0])
+    tools = [np.eye(4), np.eye(4)]
+    tools[0][2, 3], tools[1][0, 3] = 0.1, 0.2
+    with vp.connect("sim://ur5e", start=home) as arm:
+        with arm.stream() as stream:
+            for k in range(20):
+                stream.set_tool(tools[k % 2]).movej(home + 0.01 * (k % 3))
+            stream.set_tool(tools[1]).movej(home)  # the one that it has
+        log = stream.job.log
+    assert [step for step, _ in log.tools] == list(range(0, 40, 2))
+    assert len({id(robot) for _, robot in log.tools}) == 2
+    for k in range(20):
+        rows = log.move == 2 * k + 1
+        expected = robot.with_tool(tools[k % 2]).fk(log.q[rows])
+        np.testing.assert_allclose(log.samples.pose[rows], expected, atol=1e-12)
+
+
 @pytest.fixture(params=["clock", "virtual", "remote"])
 def arm(request):
     """The same arm on the machine's clock, in virtual time, and in another process."""
