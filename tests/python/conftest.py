@@ -42,9 +42,39 @@ def abc(golden: dict[str, Any]) -> dict[str, np.ndarray]:
 
 
 @pytest.fixture
+def point_file(tmp_path: Path) -> Path:
+    return tmp_path / "points.json"
+
+
+@pytest.fixture
+def points(point_file: Path, puma: vp.Robot, abc: dict[str, np.ndarray]) -> vp.PointList:
+    """A, B and C, taught into the point file."""
+    taught = vp.PointList(point_file, puma)
+    for key in "ABC":
+        taught.record(key, abc[key])
+    return taught
+
+
+@pytest.fixture
 def short(puma: vp.Robot, abc: dict[str, np.ndarray]) -> vp.Program:
     """A joint move of about 0.3 s from A."""
     return vp.Program(puma, start=abc["A"], name="short").movej(abc["A"] + 0.2)
+
+
+@pytest.fixture(scope="session")
+def ur5e() -> vp.Robot:
+    return vp.load_robot("ur5e")
+
+
+@pytest.fixture(scope="session")
+def hand(ur5e: vp.Robot) -> vp.Recording:
+    """A swing of 1 s at 500 Hz, between rests, with the noise of encoders."""
+    t = np.arange(0.0, 1.4, 0.002)
+    s = np.clip((t - 0.2) / 1.0, 0.0, 1.0)
+    swing = np.outer(s**3 * (10 - 15 * s + 6 * s**2), [0.3, 0.1, -0.1, 0, 0, 0.2])
+    q = np.radians([0, -90, 90, -90, -90, 0]) + swing
+    q += 2e-5 * np.random.default_rng(7).normal(size=q.shape)
+    return vp.Recording.of_samples(ur5e, t, q)
 
 
 @pytest.fixture(scope="session")

@@ -19,11 +19,6 @@ class _Virtual(_session.Session):
     virtual = True
 
 
-@pytest.fixture
-def ur5e():
-    return vp.load_robot("ur5e")
-
-
 def there(robot, y=0.1, z=0.0):
     pose = robot.fk(HOME)
     pose[1:3, 3] += [y, z]

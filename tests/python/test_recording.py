@@ -14,11 +14,6 @@ HOME = np.radians([0, -90, 90, -90, -90, 0])
 CYCLE = 0.002
 
 
-@pytest.fixture(scope="module")
-def ur5e():
-    return vp.load_robot("ur5e")
-
-
 def eased(t, begin, end):
     """From 0 to 1, smoothly."""
     s = np.clip((t - begin) / (end - begin), 0.0, 1.0)
