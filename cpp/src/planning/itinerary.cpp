@@ -1,7 +1,5 @@
 #include "planning/itinerary.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <functional>
 #include <optional>
@@ -12,21 +10,11 @@
 #include "planning/leg_builder.hpp"
 #include "planning/leg_merger.hpp"
 #include "planning/speed_keeping.hpp"
+#include "planning/step_flaws.hpp"
 #include "planning/tool_changes.hpp"
 #include "planning/ways_out.hpp"
-#include "viapoint/core/number_text.hpp"
-#include "viapoint/core/units.hpp"
-#include "viapoint/trajectory/trajectory.hpp"
 
 namespace viapoint::planning {
-namespace {
-
-/// Speeds [m/s, rad/s], accelerations [m/s², rad/s²] and scale: below this a move takes for ever,
-/// above nothing is limited.
-constexpr double kLeastWish = 1e-6;
-constexpr double kMostWish = 1e9;
-
-}  // namespace
 
 class ItineraryWalk::Walk {
  public:
@@ -85,62 +73,23 @@ class ItineraryWalk::Walk {
   }
 
   void operator()(const Wait& wait) {
-    if (!(wait.seconds >= 0.0 && wait.seconds <= Trajectory::kMostDuration)) {
-      add(ErrorCode::kBadArgument,
-          "a wait of " + number_text(wait.seconds) + " s; allowed are 0 to " +
-              number_text(Trajectory::kMostDuration) + " s",
-          {"give the wait in seconds, or leave it out"});
-      return;
-    }
+    if (!is_sound(flaw_of(wait))) return;
     if (wait.seconds >= kShortestWait) outputs_here_ = 0;
     merger_.flush();
     itinerary_.items.emplace_back(Dwell{step_, wait.seconds});
   }
 
   void operator()(const WaitInput& wait) {
-    if (wait.index < 0 || wait.index >= kDigitalInputs) {
-      add(ErrorCode::kBadArgument, "digital input " + std::to_string(wait.index) +
-                                       "; inputs are 0 to " + std::to_string(kDigitalInputs - 1));
-      return;
-    }
+    if (!is_sound(flaw_of(wait))) return;
     InputWait awaited{static_cast<std::int16_t>(wait.index), wait.value};
-    if (wait.timeout) {
-      awaited.timeout = *wait.timeout;
-      if (!(awaited.timeout > 0.0) || !std::isfinite(awaited.timeout)) {
-        add(ErrorCode::kBadArgument,
-            "a time-out of " + number_text(awaited.timeout) + " s; it must be above 0 and finite",
-            {"leave the time-out out to wait for ever"});
-        return;
-      }
-    }
+    if (wait.timeout) awaited.timeout = *wait.timeout;
     outputs_here_ = 0;
     merger_.flush();
     itinerary_.items.emplace_back(Dwell{step_, kRestAtInput, awaited});
   }
 
   void operator()(const SetOutput& output) {
-    if (output.index < 0 || output.index >= kDigitalOutputs) {
-      add(ErrorCode::kBadArgument, "digital output " + std::to_string(output.index) +
-                                       "; outputs are 0 to " + std::to_string(kDigitalOutputs - 1));
-      return;
-    }
-    if (!(std::abs(output.time) <= kMostOutputTime)) {
-      add(ErrorCode::kBadArgument,
-          "an output " + number_text(output.time) + " s from its point; allowed are " +
-              number_text(kMostOutputTime) + " s before or after it",
-          {"put the output at a nearer point, or a wait before it"});
-      return;
-    }
-    if (!std::isfinite(output.distance)) {
-      add(ErrorCode::kBadArgument, "the distance of an output from its point is not finite");
-      return;
-    }
-    if (output.distance != 0.0 && !robot_->has_kinematics()) {
-      add(ErrorCode::kBadArgument,
-          robot_->name() + " has no kinematics, so a distance at the tool means nothing to it",
-          {"tell the output a time instead"});
-      return;
-    }
+    if (!is_sound(flaw_of(output, *robot_))) return;
     if (output.distance == 0.0 && ++outputs_here_ > kMaxOutputsAPiece) {
       add(ErrorCode::kBadArgument,
           "more than " + std::to_string(kMaxOutputsAPiece) + " outputs change at one point",
@@ -186,16 +135,7 @@ class ItineraryWalk::Walk {
            "write the program anew for this robot"});
       return false;
     }
-    const double finest = std::min(tolerance_.position, tolerance_.angle);
-    if (!(finest >= kFinestTolerance) || !std::isfinite(tolerance_.position + tolerance_.angle)) {
-      char text[160];
-      std::snprintf(
-          text, sizeof text,
-          "tolerance of lines and curves: %g m and %g rad; each must be at least %g and finite",
-          tolerance_.position, tolerance_.angle, kFinestTolerance);
-      add(ErrorCode::kBadArgument, text);
-      return false;
-    }
+    if (!is_sound(flaw_of(tolerance_))) return false;
     try {
       require_within_limits(*robot_, program.start, "the start");
     } catch (const MotionError& error) {
@@ -235,7 +175,9 @@ class ItineraryWalk::Walk {
   void build(const std::optional<Target>& goal, const Build& build_leg,
              const std::function<std::vector<std::string>()>& ways) {
     const MoveOptions& options = given_->options;
-    if (!options_are_sound(options)) return;
+    std::vector<Problem> flaws = flaws_of(options, *robot_);
+    for (Problem& flaw : flaws) add(std::move(flaw));
+    if (!flaws.empty()) return;
     try {
       if (lost_) {  // where this leg begins is not known: only its end can be looked at
         if (!goal) return;
@@ -293,42 +235,6 @@ class ItineraryWalk::Walk {
     return false;
   }
 
-  bool options_are_sound(const MoveOptions& options) {
-    const size_t before = itinerary_.report.problems.size();
-    const auto within = [&](const std::optional<double>& wish, const char* name, double most) {
-      if (!wish || (*wish >= kLeastWish && *wish <= most)) return;
-      add(ErrorCode::kBadArgument,
-          std::string(name) + " is " + number_text(*wish) + "; it must be at least " +
-              number_text(kLeastWish) + " and at most " + number_text(most),
-          {std::string("give ") + name + " within that range, or leave it out"});
-    };
-    within(options.speed, "speed", kMostWish);
-    within(options.acceleration, "acceleration", kMostWish);
-    within(options.process_speed, "process_speed", kMostWish);
-    within(options.angular_speed, "angular_speed", kMostWish);
-    within(options.angular_acceleration, "angular_acceleration", kMostWish);
-    within(options.scale, "scale", 1.0);
-    if (!(options.zone.size >= 0.0) || !std::isfinite(options.zone.size)) {
-      add(ErrorCode::kBadArgument,
-          "zone is " + number_text(options.zone.size) + "; it must be zero or more and finite",
-          {"leave the zone out to stop at the point"});
-    }
-    if (options.zone.bounds_angle() && !(options.zone.angle > 0.0 && options.zone.angle <= kPi)) {
-      add(ErrorCode::kBadArgument,
-          "the angle of the zone is " + number_text(options.zone.angle) +
-              "; it must be above zero and at most pi",
-          {"leave the angle out to bound the position alone"});
-    }
-    const bool at_tool = options.zone.kind == ZoneKind::kRadius ||
-                         options.zone.kind == ZoneKind::kDeviation || options.zone.bounds_angle();
-    if (at_tool && !robot_->has_kinematics()) {
-      add(ErrorCode::kBadArgument,
-          robot_->name() + " has no kinematics, so a zone at the tool means nothing to it",
-          {"zone=joint_deviation(rad)"});
-    }
-    return itinerary_.report.problems.size() == before;
-  }
-
   void warn_of_correction(const Target& target) {
     const auto* pose = std::get_if<PoseTarget>(&target);
     if (pose == nullptr || pose->correction <= 0.0) return;
@@ -345,6 +251,12 @@ class ItineraryWalk::Walk {
     problem.value = pose->correction;
     problem.limit = kRotationRounding;
     add(std::move(problem));
+  }
+
+  bool is_sound(std::optional<Problem> flaw) {
+    if (!flaw) return true;
+    add(std::move(*flaw));
+    return false;
   }
 
   void add(Problem problem) {
