@@ -127,6 +127,9 @@ class HandledArm:
 
         Raises
         ------
+        DriveFaultError
+            The arm has failed or was released, before or meanwhile; the samples until then are
+            dropped, and the message says how long they lasted.
         BadArgumentError
             Seconds that are no number above 0.
         """

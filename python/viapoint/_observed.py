@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ._arguments import Vector
+from .errors import DriveFaultError
 
 Bits = npt.NDArray[np.uint64]
 Observed = tuple[Bits, npt.NDArray[np.int64], Vector, Bits, Bits]
@@ -21,6 +22,8 @@ class Observable(Protocol):
 
     @property
     def newest_cycle(self) -> int: ...
+    @property
+    def fault(self) -> str: ...
     def observed(self, from_cycle: int, most: int) -> Observed: ...
 
 
@@ -48,14 +51,70 @@ class Tape:
         self.seconds = 0.0
 
     def fetch(self) -> bool:
-        """Take what has come; False where nothing has."""
+        """Take what has come; False where nothing has.
+
+        Raises
+        ------
+        DriveFaultError
+            The loop is another one, begun anew after this one's end.
+        """
         before = self.count
-        while len((part := self._loop.observed(self._next, _MOST))[0]):
-            self._parts.append(part)
-            self._next = int(part[0][-1]) + 1
-            self.count += len(part[0])
-            self.seconds = 1e-9 * float(part[1][-1] - self._parts[0][1][0])
-        return self.count > before
+        while True:
+            # From the last one that is known: the cycles of a loop begun anew have other stamps.
+            part = self._loop.observed(self._next - (self.count > 0), _MOST)
+            new = part if self.count == 0 else self._after_the_last(part)
+            if not len(new[0]):
+                return self.count > before
+            self._parts.append(new)
+            self._next = int(new[0][-1]) + 1
+            self.count += len(new[0])
+            self.seconds = 1e-9 * float(new[1][-1] - self._parts[0][1][0])
+            if len(part[0]) < _MOST:
+                return True
+
+    def _after_the_last(self, part: Observed) -> Observed:
+        """Return the cycles after the last one that is known."""
+        last = self._next - 1
+        numbers, stamps = part[0], part[1]
+        if len(numbers) and int(numbers[0]) > last:  # it is kept no more
+            return part
+        if not len(numbers) or stamps[0] != self._parts[-1][1][-1]:
+            raise DriveFaultError(
+                f"After {self.seconds:.3f} s of measured cycles the loop was begun anew: the "
+                "drive had failed, or was released.",
+                ways_out=["Look at arm.fault_cycles, and begin again."],
+            )
+        numbers, stamps, q, inputs, outputs = part
+        return numbers[1:], stamps[1:], q[1:], inputs[1:], outputs[1:]
+
+    def require_progress(self) -> None:
+        """Raise what keeps more cycles from coming.
+
+        Raises
+        ------
+        DriveFaultError
+            The loop has failed.
+        """
+        if fault := self._loop.fault:
+            before = f"After {self.seconds:.3f} s of measured cycles: " if self.count else ""
+            raise DriveFaultError(
+                before + fault, ways_out=["Clear the fault at the drive, then connect again."]
+            )
+
+    def refuse_standstill(self) -> None:
+        """Raise that no more cycles come.
+
+        Raises
+        ------
+        DriveFaultError
+            Always; with what has failed, where something has.
+        """
+        self.require_progress()
+        raise DriveFaultError(
+            f"After {self.seconds:.3f} s of measured cycles no more come: the drive was released "
+            "by a stop of category 1, or the loop stands still.",
+            ways_out=["Connect again."],
+        )
 
     def samples(self) -> tuple[Vector, Vector, Bits]:
         """Return times from the first cycle on [s], (k,), joints (k, n) and outputs (k,)."""

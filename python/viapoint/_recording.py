@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from ._loop import Loop
 
 _PATIENCE = 1.0
-"""How much longer a recording may take than it is long [s]."""
+"""A loop of which no cycle comes for so long [s], and some cycles, stands still."""
 _LOOK = 0.01
 """So often a recording fetches what has come [s]."""
 _QUICKEST = 0.05
@@ -329,9 +329,10 @@ def record(
     """Take what every cycle measures; see `Arm.record`."""
     longest = number(seconds, "seconds", "s", above=0.0)
     tape = Tape(loop)
+    tape.require_progress()
 
     def is_over() -> bool:
-        return tape.seconds >= longest or (until is not None and until())
+        return tape.count >= 2 and (tape.seconds >= longest or (until is not None and until()))
 
     if isinstance(loop, VirtualLoop):
         loop.look = tape.fetch
@@ -340,21 +341,25 @@ def record(
             while not is_over():
                 before = tape.count
                 loop.pass_cycles(1)
-                if tape.count == before:  # a loop that has failed has no more cycles
-                    break
+                if tape.count == before:
+                    tape.refuse_standstill()
         finally:
             loop.look = None
     else:
-        # A loop that has failed has no more cycles.
-        end = time.monotonic() + longest + _PATIENCE
-        while time.monotonic() < end:
-            if tape.fetch() and is_over():
-                break
+        patience = _PATIENCE + 2.0 * period
+        heard = time.monotonic()
+        while True:
+            if tape.fetch():
+                heard = time.monotonic()
+                if is_over():
+                    break
+            elif time.monotonic() > heard + patience:
+                tape.refuse_standstill()
+            else:
+                tape.require_progress()
             time.sleep(max(period, _LOOK))
         tape.fetch()
-    if tape.count < 2:
-        there = loop.measured
-        return Recording.of_samples(robot, [0.0, period], [there, there])
+    tape.require_progress()
     t, q, outputs = tape.samples()
     count = min(int(np.searchsorted(t, longest)) + 1, len(t))
     return Recording.of_samples(robot, t[:count], q[:count], outputs[:count])

@@ -12,23 +12,6 @@ from viapoint import _session, errors
 from viapoint._recorder import Recorder
 
 HOME = np.radians([0, -90, 90, -90, -90, 0])
-NOISE = 2e-5
-
-
-@pytest.fixture(scope="module")
-def ur5e():
-    return vp.load_robot("ur5e")
-
-
-@pytest.fixture(scope="module")
-def hand(ur5e):
-    """A swing of 1 s at 500 Hz, between rests, with the noise of encoders."""
-    t = np.arange(0.0, 1.4, 0.002)
-    s = np.clip((t - 0.2) / 1.0, 0.0, 1.0)
-    share = s**3 * (10 - 15 * s + 6 * s**2)
-    q = HOME + np.outer(share, [0.3, 0.1, -0.1, 0, 0, 0.2])
-    q += NOISE * np.random.default_rng(7).normal(size=q.shape)
-    return vp.Recording.of_samples(ur5e, t, q)
 
 
 @pytest.fixture(params=["virtual", "clock"])
@@ -158,7 +141,38 @@ def test_an_arm_that_has_failed_is_neither_guided_nor_switched(session, ur5e, re
         assert not arm.guided
         with pytest.raises(errors.DriveFaultError):
             arm.set_output(1, True)
-        assert arm.record(0.01).duration < 0.01
+        with pytest.raises(errors.DriveFaultError, match="released" if released else "the tool"):
+            arm.record(0.01)
+
+
+def test_a_recording_in_which_the_arm_fails_says_what_has_failed(session, ur5e):
+    with vp.connect("sim://ur5e", start=HOME, tool_speed=0.05) as arm:
+        job = arm.run(vp.Program(ur5e, start=HOME).movej(HOME + 0.3), wait=False)
+        with pytest.raises(errors.DriveFaultError, match=r"After \d+\.\d+ s .* the tool") as caught:
+            arm.record(60.0)
+        assert arm.fault in caught.value.message
+        assert caught.value.ways_out
+        with pytest.raises(errors.DriveFaultError):
+            job.wait()
+
+
+def test_a_recording_in_which_the_drive_is_released_says_so(session, ur5e):
+    with vp.connect("sim://ur5e", start=HOME) as arm:
+        job = arm.run(vp.Program(ur5e, start=HOME).movej(HOME + 0.3), wait=False)
+
+        def let_power_go():
+            job.stop(1)
+            return False
+
+        with pytest.raises(errors.DriveFaultError, match="released by a stop of category 1"):
+            arm.record(60.0, until=let_power_go)
+
+
+def test_a_recording_that_is_over_at_once_holds_what_was_measured(session, ur5e):
+    with vp.connect("sim://ur5e", start=HOME) as arm:
+        recorded = arm.record(60.0, until=lambda: True)
+        assert len(recorded) >= 2
+        np.testing.assert_allclose(recorded.q, np.tile(HOME, (len(recorded), 1)))
 
 
 @pytest.mark.parametrize(

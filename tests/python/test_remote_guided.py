@@ -14,21 +14,6 @@ from viapoint._wire import message
 HOME = np.radians([0, -90, 90, -90, -90, 0])
 
 
-@pytest.fixture(scope="module")
-def ur5e():
-    return vp.load_robot("ur5e")
-
-
-@pytest.fixture(scope="module")
-def hand(ur5e):
-    """A swing of 1 s at 500 Hz, between rests, with the noise of encoders."""
-    t = np.arange(0.0, 1.4, 0.002)
-    s = np.clip((t - 0.2) / 1.0, 0.0, 1.0)
-    q = HOME + np.outer(s**3 * (10 - 15 * s + 6 * s**2), [0.3, 0.1, -0.1, 0, 0, 0.2])
-    q += 2e-5 * np.random.default_rng(7).normal(size=q.shape)
-    return vp.Recording.of_samples(ur5e, t, q)
-
-
 @pytest.fixture
 def url(serve):
     return serve(robot="ur5e", start=list(HOME)).url
@@ -123,6 +108,38 @@ def test_a_released_arm_is_neither_guided_nor_switched(url, ur5e):
             arm.set_output(3, True)
     with vp.connect(url) as arm:
         assert not arm.guided
+
+
+def test_a_watcher_is_told_that_the_arm_was_enabled_anew_while_he_recorded(serve, ur5e):
+    url = serve(robot="ur5e", start=list(HOME), tool_speed=0.05).url
+    with vp.connect(url, watch=True) as watcher:
+        ends = []
+
+        def fail_and_return():
+            """All between two looks: the loop that failed is gone when the watcher looks again."""
+            if not ends:
+                with vp.connect(url) as arm, pytest.raises(errors.DriveFaultError) as caught:
+                    arm.run(vp.Program(ur5e, start=arm.setpoint).movej(HOME + 0.3))
+                ends.append(caught.value)
+                vp.connect(url).close()
+            return False
+
+        with pytest.raises(errors.DriveFaultError, match="begun anew"):
+            watcher.record(60.0, until=fail_and_return)
+        assert ends
+        assert watcher.fault == ""
+        assert len(watcher.fault_cycles) > 0
+
+
+def test_an_arm_that_fails_over_the_network_is_told_to_who_records(serve, ur5e):
+    url = serve(robot="ur5e", start=list(HOME), tool_speed=0.05).url
+    with vp.connect(url) as arm:
+        job = arm.run(vp.Program(ur5e, start=HOME).movej(HOME + 0.3), wait=False)
+        for _ in range(2):
+            with pytest.raises(errors.DriveFaultError, match="the tool"):
+                arm.record(60.0)
+        with pytest.raises(errors.DriveFaultError):
+            job.wait()
 
 
 def test_hands_that_do_not_fit_are_refused_by_the_controller(url):
