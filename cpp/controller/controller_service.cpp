@@ -130,6 +130,7 @@ void ControllerService::serve_all() {
   serve("GetRun", looks_, &ControllerService::get_run);
   serve("GetReport", looks_, &ControllerService::get_report);
   serve("GetLog", looks_, &ControllerService::get_log);
+  serve("GetTools", looks_, &ControllerService::get_tools);
   serve("GetFaultCycles", looks_, &ControllerService::get_fault_cycles);
   serve("GetCycles", looks_, &ControllerService::get_cycles);
   serve("Beat", beats_, &ControllerService::beat);
@@ -140,6 +141,7 @@ void ControllerService::serve_all() {
   serve("Lengthen", commands_, &ControllerService::lengthen);
   serve("GetHandOver", commands_, &ControllerService::get_hand_over);
   serve("Close", commands_, &ControllerService::close);
+  serve("AddTools", commands_, &ControllerService::add_tools);
   serve("OnInput", commands_, &ControllerService::on_input);
   serve("SetInputs", commands_, &ControllerService::set_inputs);
   serve("SetOutputs", commands_, &ControllerService::set_outputs);
@@ -171,6 +173,11 @@ void ControllerService::get_state(const v1::GetStateRequest& /*request*/, v1::Ar
 void ControllerService::get_cycles(const v1::GetCyclesRequest& request, v1::CyclesPart& reply) {
   const std::size_t count = std::min<std::size_t>(request.count(), kMostRecords);
   reply = wire_of(host_.observed(request.from_cycle(), count));
+}
+
+void ControllerService::get_tools(const v1::GetToolsRequest& request, v1::ToolsPart& reply) {
+  const std::size_t count = std::min<std::size_t>(request.count(), kMostRecords);
+  reply = wire_of(host_.tools(request.run(), request.offset(), count));
 }
 
 void ControllerService::get_fault_cycles(const v1::GetFaultCyclesRequest& /*request*/,
@@ -246,6 +253,11 @@ void ControllerService::get_hand_over(const v1::GetHandOverRequest& request, v1:
 
 void ControllerService::close(const v1::CloseRequest& request, v1::CloseReply& /*reply*/) {
   host_.close(request.token(), request.run());
+}
+
+void ControllerService::add_tools(const v1::AddToolsRequest& request,
+                                  v1::AddToolsReply& /*reply*/) {
+  host_.add_tools(request.token(), request.run(), tools_of(request.tools()));
 }
 
 void ControllerService::on_input(const v1::OnInputRequest& request, v1::OnInputReply& /*reply*/) {

@@ -49,6 +49,7 @@ class ControllerService {
   void get_run(const v1::GetRunRequest& request, v1::RunState& reply);
   void get_report(const v1::GetReportRequest& request, v1::RunReport& reply);
   void get_log(const v1::GetLogRequest& request, v1::LogPart& reply);
+  void get_tools(const v1::GetToolsRequest& request, v1::ToolsPart& reply);
   void get_fault_cycles(const v1::GetFaultCyclesRequest& request, v1::LogPart& reply);
   void get_cycles(const v1::GetCyclesRequest& request, v1::CyclesPart& reply);
   void take_control(const std::string& peer, const v1::TakeControlRequest& request,
@@ -61,6 +62,7 @@ class ControllerService {
   void lengthen(const v1::LengthenRequest& request, v1::LengthenReply& reply);
   void get_hand_over(const v1::GetHandOverRequest& request, v1::HandOver& reply);
   void close(const v1::CloseRequest& request, v1::CloseReply& reply);
+  void add_tools(const v1::AddToolsRequest& request, v1::AddToolsReply& reply);
   void on_input(const v1::OnInputRequest& request, v1::OnInputReply& reply);
   void set_inputs(const v1::SetInputsRequest& request, v1::SetInputsReply& reply);
   void set_outputs(const v1::SetOutputsRequest& request, v1::SetOutputsReply& reply);

@@ -102,6 +102,33 @@ std::vector<JointVector> rows_of(const Doubles& values, const char* name, int jo
   return rows;
 }
 
+std::vector<ToolChange> tools_of(const v1::ToolsPart& part) {
+  constexpr int kValues = 16;
+  if (part.tool_size() != kValues * part.move_size()) {
+    refuse("tool " + count_of(part.tool_size(), kValues * part.move_size()));
+  }
+  std::vector<ToolChange> changes;
+  for (int k = 0; k < part.move_size(); ++k) {
+    ToolChange& change = changes.emplace_back();
+    change.move = part.move(k);
+    for (int i = 0; i < kValues; ++i) {
+      const double value = part.tool(k * kValues + i);
+      if (!std::isfinite(value)) refuse("tool " + std::to_string(k) + " is not finite");
+      change.tool[static_cast<size_t>(i)] = value;
+    }
+  }
+  return changes;
+}
+
+v1::ToolsPart wire_of(const std::vector<ToolChange>& changes) {
+  v1::ToolsPart part;
+  for (const ToolChange& change : changes) {
+    part.add_move(change.move);
+    for (const double value : change.tool) part.add_tool(value);
+  }
+  return part;
+}
+
 std::vector<TrajectoryPiece> pieces_of(const google::protobuf::RepeatedPtrField<v1::Piece>& pieces,
                                        int joints) {
   std::vector<TrajectoryPiece> out;

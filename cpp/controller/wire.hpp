@@ -31,10 +31,13 @@ using Doubles = google::protobuf::RepeatedField<double>;
 /// @throws MotionError(kBadArgument) for a wish that an input cannot make
 [[nodiscard]] InputReaction reaction_of(int input, bool value, v1::SteerRequest::Wish wish);
 
+/// @throws MotionError(kBadArgument) for other than 16 finite values a change
+[[nodiscard]] std::vector<ToolChange> tools_of(const v1::ToolsPart& part);
 [[nodiscard]] v1::Problem wire_of(const Problem& problem);
 [[nodiscard]] v1::HandOver wire_of(const HandOver& hand_over);
 [[nodiscard]] v1::ArmState wire_of(const HostStatus& status);
 [[nodiscard]] v1::RunReport wire_of(const RunReport& report);
+[[nodiscard]] v1::ToolsPart wire_of(const std::vector<ToolChange>& changes);
 [[nodiscard]] v1::CyclesPart wire_of(std::span<const ObservedCycle> cycles);
 [[nodiscard]] v1::LogPart wire_of(std::span<const LogRecord> records);
 

@@ -8,7 +8,7 @@ from typing import Self, Unpack, cast
 from . import _session
 from ._arguments import ArrayLike, Vector, integer, number, vector
 from ._handled_arm import HandledArm
-from ._job import Job
+from ._job import Execution, Job
 from ._loop import Loop
 from ._motion import CYCLE, Motion
 from ._program import Program, ProgramOptions, motion_of
@@ -108,7 +108,7 @@ class Arm(HandledArm, SignallingArm):
             )
         self._require_no_stream()
         session = _session.current()
-        job = Job(self._loop.run(motion._core), motion, self._cycle)
+        job = Job(self._begin(motion), motion, self._cycle)
         self._stream = None
         self._jobs = [j for j in self._jobs if not j.ended] + [job]
         session.started(job)
@@ -122,6 +122,9 @@ class Arm(HandledArm, SignallingArm):
                     ways_out=["Plan a new program from where the arm rests: start=arm.setpoint."],
                 )
         return job
+
+    def _begin(self, motion: Motion) -> Execution:
+        return self._loop.run(motion._core)
 
     def stream(
         self,

@@ -14,12 +14,15 @@ from .errors import BadArgumentError
 
 if TYPE_CHECKING:
     from ._remote import RemoteLoop
+    from ._remote_run import RemoteExecution
 
 
 class FoundJob(Job):
     """A run that another program began: all of `Job` but the motion, which only that one has."""
 
-    def __init__(self, execution: Execution, robot: Robot, period: float) -> None:
+    _execution: RemoteExecution
+
+    def __init__(self, execution: RemoteExecution, robot: Robot, period: float) -> None:
         self._execution = execution
         self._robot = robot
         self._period = period
@@ -42,12 +45,9 @@ class FoundJob(Job):
 
     @property
     def log(self) -> RunLog:
-        """Every cycle so far; complete once the job has ended.
-
-        Poses computed from it are those of the robot's own tool: which tools the program set, only
-        the program that began the run knows.
-        """
-        return RunLog.of_robot(self._execution.log(), self._robot, self._period)
+        """Every cycle so far, with the tools of the program; complete once the job has ended."""
+        tools = self._execution.tools(self._robot)
+        return RunLog.of_robot(self._execution.log(), self._robot, self._period, tools)
 
 
 class RemoteArm(Arm):
@@ -75,6 +75,13 @@ class RemoteArm(Arm):
         return (
             None if number == 0 else FoundJob(self._remote.found(number), self.robot, self._cycle)
         )
+
+    def _begin(self, motion: Motion) -> Execution:
+        if self._remote is None:
+            return super()._begin(motion)
+        run = self._remote.run(motion._core)
+        run.tell_tools(motion.tools)
+        return run
 
     @property
     def operator(self) -> str:

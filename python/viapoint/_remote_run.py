@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import time
 from typing import TYPE_CHECKING, Any
 
@@ -9,7 +10,10 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core, _wire
+from ._proven import Tools
+from ._robot import Robot
 from ._wire import Message, message
+from .errors import NotInControlError, UnconnectedError
 
 if TYPE_CHECKING:
     from ._remote import RemoteLoop
@@ -21,6 +25,8 @@ _REACTIONS = {"pause": 1, "resume": 2, "stop": 5}
 _STOPS = {2: 5, 1: 6}
 """Wish of a stop's category."""
 _RECORDS = 1000
+_MOST_TOOLS = 100_000
+"""A controller keeps so many changes of a run's tool."""
 
 
 class RemoteExecution:
@@ -34,6 +40,7 @@ class RemoteExecution:
         self.number = number
         self._end: Message | None = None
         """How the run was, once it has ended."""
+        self._tools_told = 0
         self._kept: tuple[_core.Log, Message] | None = None
 
     def _look(self) -> Message:
@@ -156,6 +163,37 @@ class RemoteExecution:
     def move(self) -> int:
         """The program's step under way."""
         return int(self._look().move)
+
+    def tell_tools(self, tools: Tools) -> None:
+        """Tell the controller those tools of the run that it does not know, for who finds it."""
+        new = tools[self._tools_told : _MOST_TOOLS]
+        # Without control the run is somebody else's, or nobody's; what was told before stays.
+        with contextlib.suppress(NotInControlError, UnconnectedError):
+            for first in range(0, len(new), _RECORDS):
+                part = new[first : first + _RECORDS]
+                changes = message(
+                    "ToolsPart",
+                    move=[step for step, _ in part],
+                    tool=np.concatenate([arm.tool.ravel() for _, arm in part]),
+                )
+                request = message(
+                    "AddToolsRequest", token=self._loop.token, run=self.number, tools=changes
+                )
+                self._loop.call("AddTools", request, "AddToolsReply")
+        self._tools_told = len(tools)
+
+    def tools(self, robot: Robot) -> Tools:
+        """Ask which tools the run moves, and from which step on."""
+        found: list[tuple[int, Robot]] = []
+        while True:
+            request = message("GetToolsRequest", run=self.number, offset=len(found), count=_RECORDS)
+            part = self._loop.call("GetTools", request, "ToolsPart")
+            if not part.move:
+                return tuple(found)
+            poses = np.array(part.tool).reshape(-1, 4, 4)
+            found += [
+                (step, robot.with_tool(pose)) for step, pose in zip(part.move, poses, strict=True)
+            ]
 
     def log(self) -> _core.Log:
         """Return every cycle so far."""

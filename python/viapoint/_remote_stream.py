@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import threading
 import time
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from . import _core
+from ._proven import Tools
 from ._remote_run import RemoteExecution
 from ._wire import Message, message
 
@@ -22,6 +24,8 @@ class RemoteOpenRun(RemoteExecution):
 
     def __init__(self, loop: RemoteLoop, number: int) -> None:
         super().__init__(loop, number)
+        self.told_tools: Callable[[], Tools] = tuple
+        """What the stream has told so far."""
         self._lock = threading.Lock()
         self._answer: Message | None = None
         self._asked = 0.0
@@ -48,6 +52,7 @@ class RemoteOpenRun(RemoteExecution):
             self._loop.call("Lengthen", request, "LengthenReply")
         with self._lock:
             self._answer = None
+        self.tell_tools(self.told_tools())
 
     def fate(self) -> int:
         """Return what became of the motion handed over last: 0 not yet, 1 taken, 2 too late."""

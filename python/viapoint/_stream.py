@@ -35,14 +35,22 @@ _MARGIN, _FAR_MARGIN = 0.05, 0.1
 """What planning and handing over may take of the motion under way [s], here and elsewhere."""
 
 
+class OtherRun(Execution, Protocol):
+    """A run in another process, which is told the tools for whoever finds it there."""
+
+    told_tools: Callable[[], Tools]
+
+    def tell_tools(self, tools: Tools) -> None: ...
+
+
 class OtherLoop(Protocol):
     """A loop in another process."""
 
-    followed: Execution
+    followed: OtherRun
     """The run that `follow` has begun last."""
 
     @property
-    def follow(self) -> Callable[[_core.PlannedMotion], Execution]: ...
+    def follow(self) -> Callable[[_core.PlannedMotion], OtherRun]: ...
 
 
 StreamLoop: TypeAlias = _core.ControllerLoop | VirtualLoop | OtherLoop
@@ -86,7 +94,7 @@ class Stream(Program):
             self._stream = _core.MotionStream(loop, robot._core, self._core, margin=_MARGIN)
         else:
             self._stream = _core.MotionStream(
-                loop.follow, robot._core, self._core, margin=_FAR_MARGIN
+                self._follow, robot._core, self._core, margin=_FAR_MARGIN
             )
         self._job: StreamJob | None = None
         self._beginning = threading.Lock()
@@ -154,6 +162,13 @@ class Stream(Program):
             loop = self._loop
             return loop.streamed(core) if isinstance(loop, VirtualLoop) else core
         return cast("OtherLoop", self._loop).followed
+
+    def _follow(self, motion: _core.PlannedMotion) -> OtherRun:
+        """Begin the run in another process."""
+        run = cast("OtherLoop", self._loop).follow(motion)
+        run.told_tools = lambda: self.tools
+        run.tell_tools(self.tools)
+        return run
 
     @property
     def tools(self) -> Tools:

@@ -65,6 +65,12 @@ void wire(std::string_view bytes) {
       for (const JointVector& row : controller::rows_of(guide.positions(), "positions", kJoints)) {
         promise(row.size() == kJoints && row.allFinite(), "a hand that is nowhere");
       }
+    } else if (kind == 't') {
+      const auto told = parsed<v1::AddToolsRequest>(bytes, is_one);
+      if (!is_one) return;
+      const std::vector<ToolChange> taken = controller::tools_of(told.tools());
+      const std::vector<ToolChange> again = controller::tools_of(controller::wire_of(taken));
+      promise(again.size() == taken.size(), "tools that change on their way");
     } else if (kind == 'i') {
       const auto reaction = parsed<v1::OnInputRequest>(bytes, is_one);
       if (!is_one) return;

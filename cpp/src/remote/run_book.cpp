@@ -18,9 +18,9 @@ std::uint64_t RunBook::add(KeptRun run) {
   return ++last_;
 }
 
-const KeptRun& RunBook::find(std::uint64_t number) const {
+std::size_t RunBook::place_of(std::uint64_t number) const {
   if (number <= last_ && last_ - number < runs_.size()) {
-    return runs_[runs_.size() - 1 - static_cast<std::size_t>(last_ - number)];
+    return runs_.size() - 1 - static_cast<std::size_t>(last_ - number);
   }
   throw MotionError(ErrorCode::kBadArgument, "run " + std::to_string(number) +
                                                  " is not known; the last one is " +

@@ -5,9 +5,11 @@
 #include <cstdint>
 #include <deque>
 #include <memory>
+#include <vector>
 
 #include "remote/open_run.hpp"
 #include "viapoint/realtime/controller_loop.hpp"
+#include "viapoint/remote/tool_change.hpp"
 
 namespace viapoint {
 
@@ -15,6 +17,7 @@ namespace viapoint {
 struct KeptRun {
   std::shared_ptr<Job> job;
   std::shared_ptr<OpenRun> open;  ///< null for one that is whole
+  std::vector<ToolChange> tools{};
 };
 
 [[nodiscard]] bool has_ended(const Job& job);
@@ -27,7 +30,8 @@ class RunBook {
   /// Returns its number.
   std::uint64_t add(KeptRun run);
   /// @throws MotionError(kBadArgument) for a run that is not kept
-  [[nodiscard]] const KeptRun& find(std::uint64_t number) const;
+  [[nodiscard]] const KeptRun& find(std::uint64_t number) const { return runs_[place_of(number)]; }
+  [[nodiscard]] KeptRun& find(std::uint64_t number) { return runs_[place_of(number)]; }
   /// nullptr before the first.
   [[nodiscard]] const KeptRun* newest() const { return runs_.empty() ? nullptr : &runs_.back(); }
   [[nodiscard]] bool is_any_under_way() const {
@@ -37,6 +41,8 @@ class RunBook {
   [[nodiscard]] std::uint64_t last() const { return last_; }
 
  private:
+  [[nodiscard]] std::size_t place_of(std::uint64_t number) const;
+
   std::size_t kept_;
   std::deque<KeptRun> runs_;  ///< the last has number last_
   std::uint64_t last_ = 0;

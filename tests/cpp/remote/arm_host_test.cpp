@@ -94,6 +94,7 @@ TEST(ArmHost, RefusesWhoIsNotInControl) {
     EXPECT_THROW(host.add_pieces(stranger, 0, move(0.5)), NotInControl);
     EXPECT_THROW((void)host.run(stranger), NotInControl);
     EXPECT_THROW(host.steer(stranger, number, Steering::kStop), NotInControl);
+    EXPECT_THROW(host.add_tools(stranger, number, {{}}), NotInControl);
     EXPECT_THROW(host.set_override(stranger, 0.5), NotInControl);
     EXPECT_THROW(host.jog(stranger, JointVector::Zero(2)), NotInControl);
     EXPECT_THROW(host.give_up_control(stranger), NotInControl);

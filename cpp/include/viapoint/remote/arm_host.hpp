@@ -15,6 +15,7 @@
 #include "viapoint/realtime/input_reaction.hpp"
 #include "viapoint/realtime/loop_cycle.hpp"
 #include "viapoint/remote/hand_over.hpp"
+#include "viapoint/remote/tool_change.hpp"
 #include "viapoint/trajectory/trajectory_piece.hpp"
 
 namespace viapoint {
@@ -96,6 +97,11 @@ class ArmHost {
   void close(const std::string& token, std::uint64_t run);
   /// @throws MotionError as lengthen()
   [[nodiscard]] HandOver hand_over(const std::string& token, std::uint64_t run);
+  /// Keeps which tools a run moves, behind those told before.
+  /// @throws MotionError(kBadArgument) beyond kMaxTools, and as steer()
+  void add_tools(const std::string& token, std::uint64_t run,
+                 const std::vector<ToolChange>& changes);
+  static constexpr std::size_t kMaxTools = 100'000;
   /// As Job's; a run that has ended stays as it is.
   /// @throws MotionError(kBadArgument) for a run that is not kept
   void steer(const std::string& token, std::uint64_t run, Steering steering);
@@ -133,6 +139,9 @@ class ArmHost {
   /// @throws MotionError(kBadArgument) for another number
   [[nodiscard]] std::shared_ptr<Job> job(std::uint64_t run) const;
   static constexpr std::uint64_t kRunsKept = 2;
+  /// Of what add_tools() was told, at most so many from `offset` on. @throws MotionError as job()
+  [[nodiscard]] std::vector<ToolChange> tools(std::uint64_t run, std::size_t offset,
+                                              std::size_t most) const;
 
   /// Stops a run on its path and a jog, and waits for the rest; nobody moves the arm any more.
   void shut_down();
