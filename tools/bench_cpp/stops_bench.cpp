@@ -29,8 +29,8 @@ struct Node {
   double tau, rate;
 };
 
-/// Rates from the cycle on in which a stop is wished, until the arm rests; nothing where the motion
-/// ends by itself.
+/// Rates from the cycle on in which a stop is wished, until the arm rests, at the motion's end at
+/// the latest.
 std::vector<Node> stop_at(const Motion& motion, double share) {
   Interpolator interpolator(motion.limits, kCycle, motion.trajectory.at(0.0).q);
   interpolator.begin(motion.trajectory);
@@ -45,7 +45,7 @@ std::vector<Node> stop_at(const Motion& motion, double share) {
     interpolator.tick(setpoint);
     nodes.push_back({interpolator.nominal_time(), interpolator.rate()});
   }
-  if (interpolator.state() != RunState::kStopped) nodes.clear();
+  if (!nodes.empty()) nodes.back().rate = 0.0;  // the end may come at any rate
   return nodes;
 }
 
@@ -73,7 +73,7 @@ Motion mixed_moves(const RobotPtr& robot, std::mt19937& random) {
   }
 }
 
-/// From a moment of the motion at random; nothing where its end forestalls the stop.
+/// From a moment of the motion at random; nothing where it has ended by then.
 void print_stop_of(std::string_view kind, const Motion& motion, std::mt19937& random) {
   if (motion.trajectory.pieces().empty()) return;
   const double share = std::uniform_real_distribution<double>(0.02, 0.98)(random);

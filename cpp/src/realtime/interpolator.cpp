@@ -29,6 +29,11 @@ Interpolator::Interpolator(const JointLimits& limits, std::chrono::nanoseconds c
       gate_(cycle_),
       position_(position) {
   shown_ = {0.0, 0.0, 0.0};
+  // From any velocity, however it is accelerated: three times up or down to a limit, and between.
+  for (int i = 0; i < limits.joints(); ++i) {
+    longest_stop_ = std::max(longest_stop_, limits.velocity[i] / limits.acceleration[i] +
+                                                3.0 * limits.acceleration[i] / limits.jerk[i]);
+  }
 }
 
 void Interpolator::begin(const Trajectory& motion, bool open) noexcept VIAPOINT_NONBLOCKING {
@@ -145,7 +150,9 @@ RunState Interpolator::tick_motion(Setpoint& setpoint) noexcept VIAPOINT_NONBLOC
   }
 
   looked_at_ = lookahead_.advance(now_.tau, kCellsACycle, kPiecesACycle);
-  const double curvature = governor_.decide(now_, target(), lookahead_);
+  rest_place_ = place_to_rest();
+  const double curvature =
+      rest_place_ < kNoPlace ? governor_.keep() : governor_.decide(now_, target(), lookahead_);
   run_state_ = classify();
   switch_outputs(direction_ == Direction::kForward);
   evaluate(curvature, setpoint);
@@ -161,7 +168,8 @@ RunState Interpolator::tick_motion(Setpoint& setpoint) noexcept VIAPOINT_NONBLOC
 }
 
 void Interpolator::switch_outputs(bool is_ahead) noexcept VIAPOINT_NONBLOCKING {
-  const TimedOutputs::Progress progress{farthest_, gate_.place(), is_ahead, now_};
+  const double until = std::min(gate_.place(), rest_place_);
+  const TimedOutputs::Progress progress{farthest_, until, is_ahead, now_};
   std::uint64_t timed = timed_outputs_.tick(progress, governor_);
   if (run_state_ == RunState::kFinished) timed = timed_outputs_.end();
   outputs_ = outputs_with(timed);
@@ -246,6 +254,9 @@ void Interpolator::move_on() noexcept VIAPOINT_NONBLOCKING {
   if (now_.tau > motion_->duration() - kEndSlack) {
     now_.tau = motion_->duration();
     if (direction_ == Direction::kBackward) rest_at(now_.tau);
+  } else if (now_.tau > rest_place_ - kEndSlack) {
+    rest_at(rest_place_);
+    if (direction_ == Direction::kForward) fresh_ = now_.tau;
   }
   stop_at_gate();
   const std::size_t piece = motion_->piece_at(nominal(now_.tau));

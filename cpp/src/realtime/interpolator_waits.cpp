@@ -1,4 +1,8 @@
-// Where a motion waits at rest: at its end for more of it, and between pieces for an input.
+// Where a motion rests: at its end for more of it, between pieces for an input, and where a stop is
+// left to it.
+#include <algorithm>
+
+#include "viapoint/profile/axis_move.hpp"
 #include "viapoint/realtime/interpolator.hpp"
 
 namespace viapoint {
@@ -6,6 +10,8 @@ namespace {
 
 /// A motion that is this little before a place to wait is there [s].
 constexpr double kPlaceSlack = 1e-9;
+/// A rest of the motion is as soon as a stop where it takes no more than this of its time.
+constexpr double kAsSoon = 1.1;
 
 }  // namespace
 
@@ -51,6 +57,35 @@ LinkFate Interpolator::lengthen(const MotionLink& link) noexcept VIAPOINT_NONBLO
   }
   stop_at_gate();
   return LinkFate::kTaken;
+}
+
+/// Of each joint by itself, so that none on the path is shorter [s].
+double Interpolator::shortest_stop() const noexcept VIAPOINT_NONBLOCKING {
+  const JointState path = motion_->pieces()[piece_].at(motion_->time_in(piece_, nominal(now_.tau)));
+  const double slope = direction_ == Direction::kForward ? now_.slope : -now_.slope;
+  double longest = 0.0;
+  for (int i = 0; i < limits_.joints(); ++i) {
+    const AxisState now{0.0, path.qd[i] * now_.rate,
+                        path.qdd[i] * now_.rate * now_.rate + path.qd[i] * slope, 0.0};
+    const AxisLimits limits =
+        AxisLimits::symmetric(limits_.velocity[i], limits_.acceleration[i], limits_.jerk[i]);
+    AxisMove stop;
+    if (quickest_velocity_change(now, {}, limits, stop) == MoveStatus::kSolved) {
+      longest = std::max(longest, stop.total);
+    }
+  }
+  return longest;
+}
+
+/// Where a stop that is wished may be left to the motion.
+double Interpolator::place_to_rest() const noexcept VIAPOINT_NONBLOCKING {
+  if (target() != 0.0 || (now_.rate == 0.0 && !governor_.changing())) return kNoPlace;
+  const double place = lookahead_.next_rest(now_.tau);
+  const double time = place < kNoPlace ? governor_.time_to(now_, place) : kNoPlace;
+  const bool goes_there = rest_place_ < kNoPlace && time < kNoPlace;
+  if (goes_there) return place;
+  const bool may_be_soon = time <= kAsSoon * longest_stop_;  // which is cheap to ask
+  return may_be_soon && time <= kAsSoon * shortest_stop() ? place : kNoPlace;
 }
 
 /// At rest where the motion ends for now.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace viapoint {
 namespace {
@@ -10,6 +11,8 @@ namespace {
 /// Rounding in what a polynomial gives, relative to the limit: far more than it takes, and far
 /// below the governor's own slack.
 constexpr double kRounding = 1e-10;
+/// Shares of the limits below which velocities and accelerations are none, but for rounding.
+constexpr double kRest = 1e-9;
 
 /// Range of a quantity that has the values a, b at the ends of `time` and changes no faster than
 /// `speed` between them. Where it does so all the way, that is [a, b].
@@ -89,6 +92,7 @@ void Lookahead::begin(const Trajectory& trajectory,
   begun_ = false;
   first_ = 0;
   end_ = 0;
+  rest_count_ = 0;
 }
 
 void Lookahead::lengthen(const Trajectory& trajectory, double same_until, double shift,
@@ -108,6 +112,9 @@ std::int64_t Lookahead::cell_of(double tau) const noexcept VIAPOINT_NONBLOCKING 
 void Lookahead::look_from(std::int64_t cell) noexcept VIAPOINT_NONBLOCKING {
   end_ = cell;
   begun_ = false;
+  while (rest_count_ > 0 &&
+         rests_[static_cast<std::size_t>(rest_count_ - 1)] >= static_cast<double>(cell) * width_)
+    --rest_count_;
   const double t = static_cast<double>(cell) * width_ - origin_;
   piece_ = index_of(
       trajectory_->piece_at(direction_ == Direction::kForward ? t : trajectory_->duration() - t));
@@ -222,12 +229,47 @@ bool Lookahead::end_cell(int& pieces) noexcept VIAPOINT_NONBLOCKING {
     } else {
       add_piece(piece, piece.duration - end, piece.duration - begin, cell);
     }
+    if (start >= from && is_rest(cell)) note_rest(start);
     if (start + piece.duration > to) break;
   }
-  if (piece_ == all.size()) add_rest(cell.ranges);
+  if (piece_ == all.size()) {
+    add_rest(cell.ranges);
+    note_rest(trajectory_->duration());
+  }
   begun_ = false;
   ++end_;
   return true;
+}
+
+/// Whether the piece added last begins at rest.
+bool Lookahead::is_rest(const Cell& cell) const noexcept VIAPOINT_NONBLOCKING {
+  for (int j = 0; j < joints_; ++j) {
+    const auto pair = static_cast<std::size_t>(j / 2);
+    if (std::abs(cell.first[pair][j % 2]) > kRest * limits_.velocity[j]) return false;
+    if (std::abs(cell.second[pair][j % 2]) > kRest * limits_.acceleration[j]) return false;
+  }
+  return true;
+}
+
+void Lookahead::note_rest(double tau) noexcept VIAPOINT_NONBLOCKING {
+  const double place = tau + origin_;
+  const double passed = static_cast<double>(first_) * width_;
+  int kept = 0;
+  for (int i = 0; i < rest_count_; ++i) {
+    const double rest = rests_[static_cast<std::size_t>(i)];
+    if (rest >= passed) rests_[static_cast<std::size_t>(kept++)] = rest;
+  }
+  rest_count_ = kept;
+  if (kept == kRests || (kept > 0 && place <= rests_[static_cast<std::size_t>(kept - 1)])) return;
+  rests_[static_cast<std::size_t>(rest_count_++)] = place;
+}
+
+double Lookahead::next_rest(double tau) const noexcept VIAPOINT_NONBLOCKING {
+  for (int i = 0; i < rest_count_; ++i) {
+    const double rest = rests_[static_cast<std::size_t>(i)] - origin_;
+    if (rest > tau) return rest;
+  }
+  return std::numeric_limits<double>::infinity();
 }
 
 void Lookahead::add_piece(const TrajectoryPiece& piece, double from, double to,

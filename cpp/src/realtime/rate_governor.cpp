@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace viapoint {
@@ -72,6 +73,10 @@ double RateGovernor::decide(const RateState& now, double target,
   wanted_ = target;
   const double end = changing() ? plan_.end_rate : now.rate;
   if (std::abs(target - end) > kSameRate) improve(now, target, lookahead);
+  return keep();
+}
+
+double RateGovernor::keep() const noexcept {
   return changing() ? plan_.step[static_cast<std::size_t>(plan_.position)].curvature : 0.0;
 }
 
@@ -96,6 +101,21 @@ double RateGovernor::settled_at(const RateState& now) const noexcept VIAPOINT_NO
     state = state.after(step.cycles * cycle_, step.curvature);
   }
   return std::max(now.tau, state.tau);
+}
+
+double RateGovernor::time_to(const RateState& now, double tau) const noexcept VIAPOINT_NONBLOCKING {
+  RateState state = now;
+  double time = 0.0;
+  for (int k = plan_.position; k < plan_.steps; ++k) {
+    const Step& step = plan_.step[static_cast<std::size_t>(k)];
+    const double part = step.cycles * cycle_;
+    const RateState next = state.after(part, step.curvature);
+    if (next.tau >= tau) return time + part * (tau - state.tau) / (next.tau - state.tau);
+    time += part;
+    state = next;
+  }
+  const double rate = changing() ? plan_.end_rate : now.rate;
+  return rate > 0.0 ? time + (tau - state.tau) / rate : std::numeric_limits<double>::infinity();
 }
 
 RateState RateGovernor::after(const RateState& now,

@@ -21,6 +21,16 @@ Cubic between(const LogRecord& a, const LogRecord& b, double cycle) {
   return cubic;
 }
 
+/// Whether a piece begins there, or the motion ends, at rest.
+bool begins_at_rest(const Trajectory& motion, double tau) {
+  constexpr double kSlack = 1e-9;
+  const JointState path = motion.at(tau);
+  if (path.qd.norm() > kSlack || path.qdd.norm() > kSlack) return false;
+  const std::size_t piece = motion.piece_at(tau);
+  const double begin = motion.start_of(piece), end = begin + motion.pieces()[piece].duration;
+  return std::min(std::abs(tau - begin), std::abs(tau - end)) < kSlack;
+}
+
 }  // namespace
 
 double Shares::worst() const { return std::max({velocity, acceleration, jerk}); }
@@ -33,10 +43,9 @@ Shares worst_shares(const Motion& motion, std::span<const LogRecord> log, double
     // before the cycle does.
     if (log[k].nominal_time == 0.0 && log[k].rate != log[k + 1].rate) continue;
     if (log[k + 1].nominal_time >= motion.trajectory.duration()) continue;
-    // So it does where a step, or the way back, ends at a point at which the path rests.
-    const JointState end = motion.trajectory.at(log[k + 1].nominal_time);
-    const bool may_end = log[k + 1].rate == 0.0 || log[k + 1].nominal_time == 0.0;
-    if (may_end && end.qd.norm() < 1e-9 && end.qdd.norm() < 1e-9) continue;
+    // So it does where a step, a stop, or the way back, ends at a point at which the path rests,
+    // and from there it goes on at any rate.
+    if (begins_at_rest(motion.trajectory, log[k + 1].nominal_time)) continue;
     const Cubic c = between(log[k], log[k + 1], cycle);
     for (int s = 0; s < samples; ++s) {
       const double t = cycle * (s + 0.5) / samples;

@@ -88,12 +88,14 @@ std::vector<Told> random_changes(std::mt19937& random, double duration) {
 struct Watched {
   std::vector<double> tau, farthest, rate;
   std::vector<std::uint64_t> outputs;
+  std::vector<bool> pauses;
 
-  void note(const Interpolator& interpolator, const Setpoint& setpoint) {
+  void note(const Interpolator& interpolator, const Setpoint& setpoint, bool is_to_turn) {
     tau.push_back(interpolator.nominal_time());
     rate.push_back(interpolator.rate());
     farthest.push_back(farthest.empty() ? tau.back() : std::max(farthest.back(), tau.back()));
     outputs.push_back(setpoint.outputs);
+    pauses.push_back(is_to_turn || interpolator.state() == RunState::kPausing);
   }
   [[nodiscard]] std::size_t last() const { return tau.size() - 1; }
   [[nodiscard]] bool is_on(std::size_t k, int output) const {
@@ -119,7 +121,8 @@ struct Watched {
   }
   [[nodiscard]] bool is_steady(std::size_t from, std::size_t to) const {
     for (std::size_t k = from; k <= to; ++k) {
-      if (rate[k] != rate[from] || rate[k] <= 0.0) return false;
+      // A pause, or a turn, may keep the rate until the path rests: beyond, nothing is due.
+      if (rate[k] != rate[from] || rate[k] <= 0.0 || pauses[k]) return false;
     }
     return true;
   }
@@ -173,19 +176,22 @@ int judge(const Watched& run, const std::vector<Told>& told) {
   return exact;
 }
 
-void command(Interpolator& interpolator, std::mt19937& random) {
+/// @param wish the last one
+void command(Interpolator& interpolator, std::mt19937& random, Wish& wish) {
   if (uniform(random, 0.0, 1.0) > 0.02) return;
   if (uniform(random, 0.0, 1.0) < 0.4) {
     return interpolator.set_override(uniform(random, 0.0, 1.0));
   }
   constexpr std::array kWishes = {Wish::kRun, Wish::kRun, Wish::kPause, Wish::kBackward,
                                   Wish::kStep};
-  interpolator.wish(kWishes[random() % kWishes.size()]);
+  wish = kWishes[random() % kWishes.size()];
+  interpolator.wish(wish);
 }
 
-void go_on(Interpolator& interpolator) {
+void go_on(Interpolator& interpolator, Wish& wish) {
   interpolator.set_override(1.0);
-  interpolator.wish(Wish::kRun);
+  wish = Wish::kRun;
+  interpolator.wish(wish);
 }
 
 TEST(TimedOutputs, ComeOnceAndWhenTheyAreToldWhateverIsCommanded) {
@@ -201,12 +207,13 @@ TEST(TimedOutputs, ComeOnceAndWhenTheyAreToldWhateverIsCommanded) {
     Watched run;
     Setpoint setpoint;
     std::uint64_t allocations = 0;
+    Wish wish = Wish::kRun;
     for (int k = 0; interpolator.active(); ++k) {
-      if (seed % 4 != 0) k < 1200 ? command(interpolator, random) : go_on(interpolator);
+      if (seed % 4 != 0) k < 1200 ? command(interpolator, random, wish) : go_on(interpolator, wish);
       const NoAllocationScope scope;
       interpolator.tick(setpoint);
       allocations += scope.calls();
-      run.note(interpolator, setpoint);
+      run.note(interpolator, setpoint, wish == Wish::kBackward);
     }
     ASSERT_EQ(allocations, 0U);
     exact += judge(run, told);
@@ -229,8 +236,9 @@ TEST(TimedOutputs, AreTheSameWhenTheMotionIsHandedOverInParts) {
     const MotionLink* link = nullptr;
     Watched run;
     Setpoint setpoint;
+    Wish wish = Wish::kRun;
     for (int k = 0; interpolator.active(); ++k) {
-      k < 1000 ? command(interpolator, random) : go_on(interpolator);
+      k < 1000 ? command(interpolator, random, wish) : go_on(interpolator, wish);
       if (k == 1000) interpolator.close();
       const double now = interpolator.nominal_time();
       const std::size_t first = whole.piece_at(now) + 1 + random() % 3;
@@ -249,7 +257,7 @@ TEST(TimedOutputs, AreTheSameWhenTheMotionIsHandedOverInParts) {
         if (fate != LinkFate::kNotYet) link = nullptr;
       }
       interpolator.tick(setpoint);
-      run.note(interpolator, setpoint);
+      run.note(interpolator, setpoint, wish == Wish::kBackward);
     }
     judge(run, told);
     if (HasFailure()) return;

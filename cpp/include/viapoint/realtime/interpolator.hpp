@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include "viapoint/core/joint_limits.hpp"
 #include "viapoint/core/nonblocking.hpp"
@@ -47,6 +48,8 @@ enum class Wish : std::uint8_t {
 /// Backward it is the mirrored motion that runs, by the same law: it turns at rest, and rests at
 /// the motion's start. Outputs are held meanwhile, and on the way forward again until the farthest
 /// piece that was reached, so that none is ever switched twice.
+///
+/// A stop is left to the motion itself where that rests as soon as any stop could, but for a tenth.
 ///
 /// A step ends with the move under way: exactly there and at rest where the path rests between the
 /// moves, and where it does not, at rest as soon after it as can be.
@@ -163,15 +166,19 @@ class Interpolator {
   void turn_where_wanted() noexcept VIAPOINT_NONBLOCKING;
   void rest_at(double way) noexcept VIAPOINT_NONBLOCKING;
   void end_step(std::size_t piece) noexcept VIAPOINT_NONBLOCKING;
+  [[nodiscard]] double shortest_stop() const noexcept VIAPOINT_NONBLOCKING;
+  [[nodiscard]] double place_to_rest() const noexcept VIAPOINT_NONBLOCKING;
   [[nodiscard]] bool rests_at_start_of(std::size_t piece) const noexcept VIAPOINT_NONBLOCKING;
   void enter_piece(std::size_t piece) noexcept VIAPOINT_NONBLOCKING;
   void evaluate(double curvature, Setpoint& setpoint) noexcept VIAPOINT_NONBLOCKING;
   void move_on() noexcept VIAPOINT_NONBLOCKING;
 
   static constexpr int kNoMove = -1;
+  static constexpr double kNoPlace = std::numeric_limits<double>::infinity();
 
   JointLimits limits_;
   double cycle_;
+  double longest_stop_ = 0.0;  ///< that shortest_stop() may ever say [s]
   RateGovernor governor_;
   Jog jog_;
   int jog_cycles_;  ///< that a wish counts for
@@ -184,6 +191,8 @@ class Interpolator {
   bool open_ = false;      ///< more may come
   bool waits_ = false;     ///< at the end of an open motion
   bool may_go_back_ = true;
+  /// τ at which the motion itself rests, where the stop under way leaves it to that.
+  double rest_place_ = kNoPlace;
   double fresh_ = 0.0;     ///< τ at which the motion goes on from rest: any rate may begin there
   double left_out_ = 0.0;  ///< nominal time of what was left out at the beginning [s]
   const Trajectory* motion_ = nullptr;

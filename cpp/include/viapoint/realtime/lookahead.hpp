@@ -103,6 +103,10 @@ class Lookahead {
   [[nodiscard]] bool ranges(double from, double to,
                             PathStretch& out) const noexcept VIAPOINT_NONBLOCKING;
 
+  /// First of the places known ahead at which the motion rests, after τ [s], its end among them;
+  /// infinity where none is known. There any rate is as good as any other. Real-time: safe.
+  [[nodiscard]] double next_rest(double tau) const noexcept VIAPOINT_NONBLOCKING;
+
   [[nodiscard]] int joints() const noexcept { return joints_; }
   /// Cells that the window holds.
   static constexpr int kCells = 256;
@@ -125,6 +129,8 @@ class Lookahead {
   [[nodiscard]] double start_of(std::size_t piece) const noexcept VIAPOINT_NONBLOCKING;
   [[nodiscard]] std::int64_t cell_of(double tau) const noexcept VIAPOINT_NONBLOCKING;
   void look_from(std::int64_t cell) noexcept VIAPOINT_NONBLOCKING;
+  [[nodiscard]] bool is_rest(const Cell& cell) const noexcept VIAPOINT_NONBLOCKING;
+  void note_rest(double tau) noexcept VIAPOINT_NONBLOCKING;
   void begin_cell() noexcept VIAPOINT_NONBLOCKING;
   [[nodiscard]] bool end_cell(int& pieces) noexcept VIAPOINT_NONBLOCKING;
   void add_piece(const TrajectoryPiece& piece, double from, double to,
@@ -143,6 +149,11 @@ class Lookahead {
   std::int64_t first_ = 0;   ///< first cell still held
   std::int64_t end_ = 0;     ///< first cell not computed yet
   std::vector<Cell> cells_;  ///< ring, kCells long
+
+  /// Rests beyond these are found when some are behind the arm.
+  static constexpr int kRests = 16;
+  std::array<double, kRests> rests_{};  ///< in order; on the time of the cells [s]
+  int rest_count_ = 0;
 };
 
 }  // namespace viapoint

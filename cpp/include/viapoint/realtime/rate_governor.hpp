@@ -62,6 +62,12 @@ class RateGovernor {
   /// State in `time` [s], if nothing else is decided until then.
   [[nodiscard]] RateState after(const RateState& now,
                                 double time) const noexcept VIAPOINT_NONBLOCKING;
+  /// Time until nominal time `tau` > now.tau [s] if nothing else is decided until then; infinity
+  /// where the rate is 0 before. Within a step of the plan it is told by its mean rate.
+  [[nodiscard]] double time_to(const RateState& now,
+                               double tau) const noexcept VIAPOINT_NONBLOCKING;
+  /// Decides to go on as decided before: γ [1/s²] for the cycle that begins now.
+  [[nodiscard]] double keep() const noexcept;
   /// Decides γ [1/s²] for the cycle that begins at `now`, on the way to the rate `target`.
   [[nodiscard]] double decide(const RateState& now, double target,
                               const Lookahead& lookahead) noexcept VIAPOINT_NONBLOCKING;
