@@ -1,6 +1,5 @@
 #include "viapoint/remote/arm_host.hpp"
 
-#include <algorithm>
 #include <condition_variable>
 #include <cstddef>
 #include <mutex>
@@ -260,23 +259,13 @@ void ArmHost::add_tools(const std::string& token, std::uint64_t run,
                         const std::vector<ToolChange>& changes) {
   const std::lock_guard lock(impl_->mutex);
   impl_->seat.require(token);
-  std::vector<ToolChange>& tools = impl_->runs.find(run).tools;
-  if (changes.size() > kMaxTools - tools.size()) {
-    throw MotionError(ErrorCode::kBadArgument, "a run changes tools " +
-                                                   std::to_string(tools.size() + changes.size()) +
-                                                   " times; kept are " + std::to_string(kMaxTools));
-  }
-  tools.insert(tools.end(), changes.begin(), changes.end());
+  impl_->runs.add_tools(run, changes);
 }
 
 std::vector<ToolChange> ArmHost::tools(std::uint64_t run, std::size_t offset,
                                        std::size_t most) const {
   const std::lock_guard lock(impl_->mutex);
-  const std::vector<ToolChange>& tools = impl_->runs.find(run).tools;
-  const auto begin = static_cast<std::ptrdiff_t>(std::min(offset, tools.size()));
-  const auto count =
-      static_cast<std::ptrdiff_t>(std::min(most, tools.size() - static_cast<std::size_t>(begin)));
-  return {tools.begin() + begin, tools.begin() + begin + count};
+  return impl_->runs.tools(run, offset, most);
 }
 
 void ArmHost::steer(const std::string& token, std::uint64_t run, Steering steering) {

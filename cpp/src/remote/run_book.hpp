@@ -31,7 +31,10 @@ class RunBook {
   std::uint64_t add(KeptRun run);
   /// @throws MotionError(kBadArgument) for a run that is not kept
   [[nodiscard]] const KeptRun& find(std::uint64_t number) const { return runs_[place_of(number)]; }
-  [[nodiscard]] KeptRun& find(std::uint64_t number) { return runs_[place_of(number)]; }
+  /// As ArmHost's.
+  void add_tools(std::uint64_t number, const std::vector<ToolChange>& changes);
+  [[nodiscard]] std::vector<ToolChange> tools(std::uint64_t number, std::size_t offset,
+                                              std::size_t most) const;
   /// nullptr before the first.
   [[nodiscard]] const KeptRun* newest() const { return runs_.empty() ? nullptr : &runs_.back(); }
   [[nodiscard]] bool is_any_under_way() const {

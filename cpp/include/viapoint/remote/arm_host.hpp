@@ -101,7 +101,6 @@ class ArmHost {
   /// @throws MotionError(kBadArgument) beyond kMaxTools, and as steer()
   void add_tools(const std::string& token, std::uint64_t run,
                  const std::vector<ToolChange>& changes);
-  static constexpr std::size_t kMaxTools = 100'000;
   /// As Job's; a run that has ended stays as it is.
   /// @throws MotionError(kBadArgument) for a run that is not kept
   void steer(const std::string& token, std::uint64_t run, Steering steering);

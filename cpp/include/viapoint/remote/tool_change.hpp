@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 namespace viapoint {
@@ -12,5 +13,8 @@ struct ToolChange {
   std::int32_t move = 0;
   std::array<double, 16> tool{};  ///< pose_flange_tool, 4 by 4, row by row [m]
 };
+
+/// So many changes of a run are kept.
+inline constexpr std::size_t kMaxTools = 100'000;
 
 }  // namespace viapoint
