@@ -13,7 +13,7 @@ from . import _core, _wire
 from ._proven import Tools
 from ._robot import Robot
 from ._wire import Message, message
-from .errors import NotInControlError, UnconnectedError
+from .errors import MotionError
 
 if TYPE_CHECKING:
     from ._remote import RemoteLoop
@@ -167,8 +167,8 @@ class RemoteExecution:
     def tell_tools(self, tools: Tools) -> None:
         """Tell the controller those tools of the run that it does not know, for who finds it."""
         new = tools[self._tools_told : _MOST_TOOLS]
-        # Without control the run is somebody else's, or nobody's; what was told before stays.
-        with contextlib.suppress(NotInControlError, UnconnectedError):
+        # The run does not hang on it: what could not be told, without control say, is left out.
+        with contextlib.suppress(MotionError):
             for first in range(0, len(new), _RECORDS):
                 part = new[first : first + _RECORDS]
                 changes = message(
@@ -180,7 +180,7 @@ class RemoteExecution:
                     "AddToolsRequest", token=self._loop.token, run=self.number, tools=changes
                 )
                 self._loop.call("AddTools", request, "AddToolsReply")
-        self._tools_told = len(tools)
+                self._tools_told += len(part)
 
     def tools(self, robot: Robot) -> Tools:
         """Ask which tools the run moves, and from which step on."""

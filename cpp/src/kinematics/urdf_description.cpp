@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
-#include <set>
 
+#include "kinematics/urdf_ring.hpp"
 #include "kinematics/xml_bounds.hpp"
 #include "viapoint/core/error.hpp"
 #include "viapoint/core/number_range.hpp"
@@ -79,6 +79,10 @@ urdf::ModelInterfaceSharedPtr parse(const std::string& text, const std::string& 
                " in one another",
            {"check that this is the URDF of a robot", "leave out what is not on the arm's chain"});
   }
+  if (const auto ring = urdf_ring(text)) {
+    refuse(source, "link \"" + ring->link + "\" carries itself: its joints form a ring",
+           {"correct the parent of joint \"" + ring->joint + "\""});
+  }
   // liburdfdom reports through one handler for the whole process.
   static std::mutex one_at_a_time;
   const std::lock_guard lock(one_at_a_time);
@@ -128,34 +132,6 @@ void require_near(const Pose& pose, const std::string& what, const std::string& 
 bool moves(const urdf::Joint& joint) {
   return joint.type == urdf::Joint::REVOLUTE || joint.type == urdf::Joint::CONTINUOUS ||
          joint.type == urdf::Joint::PRISMATIC;
-}
-
-/// Links of a ring own one another, and would never be given back.
-void let_go_of_children(const urdf::ModelInterface& model) {
-  for (const auto& [name, link] : model.links_) {
-    link->child_joints.clear();
-    link->child_links.clear();
-  }
-}
-
-/// The way up from every link ends at the root: liburdfdom lets a ring of joints beside it pass.
-void require_tree(const urdf::ModelInterface& model, const std::string& source) {
-  std::set<urdf::LinkConstSharedPtr> rooted;
-  for (const auto& [name, start] : model.links_) {
-    std::set<urdf::LinkConstSharedPtr> way;
-    for (urdf::LinkConstSharedPtr link = start; link && !rooted.contains(link);
-         link = link->parent_joint ? model.getLink(link->parent_joint->parent_link_name)
-                                   : nullptr) {
-      if (way.insert(link).second) continue;
-      let_go_of_children(model);
-      refuse(source,
-             "link \"" + link->name +
-                 "\" carries itself: its joints form a ring, apart from the root " + "link \"" +
-                 model.getRoot()->name + "\"",
-             {"correct the parent of joint \"" + link->parent_joint->name + "\""});
-    }
-    rooted.merge(way);
-  }
 }
 
 /// False for a link that is fixed to the root, such as the second name that many files give it.
@@ -254,7 +230,6 @@ void add_limits(RobotDescription& out, const urdf::Joint& joint, const std::stri
 RobotDescription description_from_urdf(const std::string& text, const std::string& source,
                                        const std::string& tip) {
   const urdf::ModelInterfaceSharedPtr model = parse(text, source);
-  require_tree(*model, source);
   std::vector<urdf::JointConstSharedPtr> joints;
   for (auto link = find_tip(*model, source, tip); link->parent_joint;
        link = model->getLink(link->parent_joint->parent_link_name)) {

@@ -46,6 +46,7 @@ void Interpolator::begin(const Trajectory& motion, bool open) noexcept VIAPOINT_
   wish_ = Wish::kRun;
   direction_ = Direction::kForward;
   off_path_ = false;
+  rest_place_ = kNoPlace;
   return_.drop();
   // At rest any rate is as good as any other: the motion starts at the one wanted.
   now_ = {0.0, override_, 0.0};
@@ -105,6 +106,12 @@ double Interpolator::target() const noexcept {
   return wants_motion() && direction_ == wanted ? override_ : 0.0;
 }
 
+/// The beginning of a piece for what is that but for rounding: a place belongs to what comes next.
+double Interpolator::snapped(double tau) const noexcept VIAPOINT_NONBLOCKING {
+  const double begin = motion_->start_of(motion_->piece_at(tau + kEndSlack));
+  return std::abs(begin - tau) < kEndSlack ? begin : tau;
+}
+
 /// From a time along the way to the nominal one, and back.
 double Interpolator::nominal(double way) const noexcept {
   return direction_ == Direction::kForward ? way : std::max(0.0, motion_->duration() - way);
@@ -143,6 +150,7 @@ RunState Interpolator::tick_motion(Setpoint& setpoint) noexcept VIAPOINT_NONBLOC
       now_.tau == fresh_ && direction_ == Direction::kForward && !governor_.changing();
   if (untouched) {
     now_.rate = target();
+    anchor_ = now_.tau;  // it may have come here at speed
     since_anchor_ = 0;
   }
   if (wish_ == Wish::kStep && step_move_ == kNoMove && direction_ == Direction::kForward) {
@@ -187,7 +195,7 @@ void Interpolator::turn_where_wanted() noexcept VIAPOINT_NONBLOCKING {
   if (!wants_motion() || now_.rate != 0.0 || governor_.changing()) return;
   const auto wanted = wish_ == Wish::kBackward ? Direction::kBackward : Direction::kForward;
   if (wanted == direction_) return;
-  const double tau = nominal(now_.tau);
+  const double tau = snapped(nominal(now_.tau));
   direction_ = wanted;
   rest_at(nominal(tau));
   piece_ = motion_->piece_at(nominal(now_.tau));  // there and back again may end a rounding away
@@ -255,7 +263,7 @@ void Interpolator::move_on() noexcept VIAPOINT_NONBLOCKING {
     now_.tau = motion_->duration();
     if (direction_ == Direction::kBackward) rest_at(now_.tau);
   } else if (now_.tau > rest_place_ - kEndSlack) {
-    rest_at(rest_place_);
+    rest_at(direction_ == Direction::kForward ? snapped(rest_place_) : rest_place_);
     if (direction_ == Direction::kForward) fresh_ = now_.tau;
   }
   stop_at_gate();

@@ -21,12 +21,14 @@ LinkFate Interpolator::lengthen(const MotionLink& link) noexcept VIAPOINT_NONBLO
   const bool goes_back =
       direction_ == Direction::kBackward || (wish_ == Wish::kBackward && !link.begins_at_rest);
   if (goes_back || piece_ < link.dropped) return LinkFate::kNotYet;
-  if (!waits_ && governor_.settled_at(now_) > link.same_until) {
-    return now_.tau > link.same_until ? LinkFate::kTooLate : LinkFate::kNotYet;
+  // A place that is its own but for rounding is the same place.
+  const double same_until = link.same_until + kPlaceSlack;
+  if (!waits_ && governor_.settled_at(now_) > same_until) {
+    return now_.tau > same_until ? LinkFate::kTooLate : LinkFate::kNotYet;
   }
-  if (waits_ && now_.tau > link.same_until) return LinkFate::kTooLate;
+  if (waits_ && now_.tau > same_until) return LinkFate::kTooLate;
   // It has been beyond on the old way, and come back: outputs there are switched, and not again.
-  if (farthest_ > link.same_until) return LinkFate::kTooLate;
+  if (farthest_ > same_until) return LinkFate::kTooLate;
   // At its end the arm rests, whatever rate it came with; what follows begins anew.
   const bool rests = waits_ || now_.tau >= motion_->duration();
   timed_outputs_.lengthen(link.motion->timed_changes(), link.dropped, link.shift, farthest_,
@@ -43,6 +45,7 @@ LinkFate Interpolator::lengthen(const MotionLink& link) noexcept VIAPOINT_NONBLO
   shown_.tau -= link.shift;  // which a jog leaves as it is
   anchor_ -= link.shift;
   fresh_ -= link.shift;
+  rest_place_ = rest_place_ <= same_until ? rest_place_ - link.shift : kNoPlace;
   farthest_piece_ -= link.dropped;
   farthest_ -= link.shift;
   lookahead_.lengthen(*motion_, link.same_until, link.shift, link.dropped);
@@ -50,6 +53,10 @@ LinkFate Interpolator::lengthen(const MotionLink& link) noexcept VIAPOINT_NONBLO
     waits_ = false;
     rest_at(now_.tau);
     fresh_ = now_.tau;
+  } else if (now_.rate == 0.0 && !governor_.changing()) {
+    const bool is_fresh = fresh_ == now_.tau;
+    rest_at(snapped(now_.tau));
+    if (is_fresh) fresh_ = now_.tau;
   }
   enter_piece(motion_->piece_at(now_.tau));
   if (rests && step_move_ != kNoMove && motion_->pieces()[piece_].move != step_move_) {

@@ -207,6 +207,27 @@ TEST(UrdfDescription, RefusesARingOfJointsBesideTheRoot) {
   EXPECT_TRUE(says(problem, "joint \"ba\"") || says(problem, "joint \"ab\"")) << problem.describe();
 }
 
+TEST(UrdfDescription, RefusesARingThatLeavesNoRootOrAlsoHangsOnTheTree) {
+  const std::string links = R"(<robot name="r"><link name="a"/><link name="b"/><link name="c"/>)";
+  const auto joint = [](const std::string& parent, const std::string& child) {
+    return "<joint name=\"" + parent + child + "\" type=\"fixed\"><parent link=\"" + parent +
+           "\"/><child link=\"" + child + "\"/></joint>";
+  };
+  for (const std::string& joints :
+       {joint("a", "b") + joint("b", "c") + joint("c", "a"), joint("a", "a"),
+        joint("a", "b") + joint("b", "c") + joint("c", "b")}) {
+    const Problem problem = problem_of(links + joints + "</robot>");
+    EXPECT_TRUE(says(problem, "form a ring")) << problem.describe();
+  }
+  // Far from any ring, and in the order that is worst for a search.
+  std::string chain = R"(<robot name="r"><link name="l10000"/>)";
+  for (int i = 10'000; i < 20'000; ++i) {
+    const std::string child = "l" + std::to_string(i + 1);
+    chain += "<link name=\"" + child + "\"/>" + joint("l" + std::to_string(i), child);
+  }
+  EXPECT_FALSE(says(problem_of(chain + joint("l20000", "nowhere") + "</robot>"), "form a ring"));
+}
+
 TEST(UrdfDescription, SaysWhatMendsAComplaint) {
   const auto way = [](const Problem& problem) {
     return problem.ways_out.empty() ? "" : problem.ways_out.front();

@@ -108,68 +108,6 @@ TEST(InterpolatorRate, StopsFromAConstantSpeedInATenthMoreThanTheShortestTime) {
   }
 }
 
-/// Nominal times within the last pieces before the motion rests on its way, and those rests.
-struct Approach {
-  double from, rest;
-};
-std::vector<Approach> approaches(const Trajectory& motion) {
-  std::vector<Approach> found;
-  for (std::size_t i = 1; i + 1 < motion.pieces().size(); ++i) {
-    const JointState end = motion.pieces()[i + 1].at(0.0);
-    const bool moves = motion.pieces()[i].at(0.0).qdd.norm() > 1e-3;
-    if (moves && end.qd.norm() < 1e-12 && end.qdd.norm() < 1e-12) {
-      found.push_back({motion.start_of(i), motion.start_of(i + 1)});
-    }
-  }
-  return found;
-}
-
-/// There the jerk brings the deceleration to nothing as quickly as it may: no stop is shorter.
-TEST(InterpolatorRate, IsLeftToTheMotionWhereThatRestsAsSoonAsAStopCould) {
-  int stopped = 0;
-  for (unsigned seed = 0; seed < kMotions / 2; ++seed) {
-    SCOPED_TRACE(seed);
-    std::mt19937 random(seed);
-    const Motion motion = straight_motion(random);
-    for (const Approach& approach : approaches(motion.trajectory)) {
-      const double share = std::uniform_real_distribution<double>(0.0, 1.0)(random);
-      const double moment = approach.from + share * (approach.rest - approach.from);
-      Interpolator interpolator = start(motion);
-      std::vector<LogRecord> log;
-      while (interpolator.nominal_time() < moment) log.push_back(tick(interpolator));
-      const double begun = interpolator.nominal_time() + kSeconds;  // of the cycle to come
-      if (begun > approach.rest - kSeconds) continue;
-      interpolator.wish(Wish::kPause);
-      while (interpolator.state() != RunState::kPaused && log.size() < 20000) {
-        log.push_back(tick(interpolator));
-      }
-      ++stopped;
-      ASSERT_EQ(log.back().nominal_time, approach.rest);
-      ASSERT_EQ(log.back().q, motion.trajectory.at(approach.rest).q);
-      const auto paused = static_cast<double>(log.size() - 1) * kSeconds;
-      ASSERT_LT(paused, approach.rest + kSeconds);
-      // As if it had never been paused: it goes on at once, and outputs there come once.
-      interpolator.wish(Wish::kRun);
-      while (interpolator.active()) log.push_back(tick(interpolator));
-      const auto whole = static_cast<double>(log.size() - 1) * kSeconds;
-      ASSERT_LT(whole, motion.trajectory.duration() + 3.0 * kSeconds);
-      ASSERT_LE(worst_shares(motion, log, kSeconds, 10).worst(), 1.0 + 1e-6);
-    }
-  }
-  EXPECT_GT(stopped, static_cast<int>(kMotions / 4));
-}
-
-/// Far from where the motion rests a stop does not wait for it.
-TEST(InterpolatorRate, StopsBeforeARestThatIsFarther) {
-  const Motion motion = long_move(2.0, 20.0, 200.0);
-  Interpolator interpolator = start(motion);
-  while (interpolator.nominal_time() < 0.5 * motion.trajectory.duration()) (void)tick(interpolator);
-  const double begun = interpolator.nominal_time();
-  interpolator.wish(Wish::kStop);
-  while (interpolator.active()) (void)tick(interpolator);
-  EXPECT_LT(interpolator.nominal_time(), begun + 0.2);
-}
-
 TEST(InterpolatorRate, OverrideGoesDownToOnePercentInStepsOfOneInMotion) {
   std::mt19937 random(7);
   Motion motion = random_motion(random);

@@ -151,6 +151,7 @@ class Interpolator {
   [[nodiscard]] bool wants_motion() const noexcept;
   [[nodiscard]] double target() const noexcept;
   [[nodiscard]] double nominal(double way) const noexcept;
+  [[nodiscard]] double snapped(double tau) const noexcept VIAPOINT_NONBLOCKING;
   [[nodiscard]] bool ends_here() const noexcept;
   [[nodiscard]] RunState classify_wait() const noexcept;
   [[nodiscard]] RunState classify() const noexcept;

@@ -150,7 +150,7 @@ class Lookahead {
   std::int64_t end_ = 0;     ///< first cell not computed yet
   std::vector<Cell> cells_;  ///< ring, kCells long
 
-  /// Rests beyond these are found when some are behind the arm.
+  /// Of more than these within the window the later ones stay unknown.
   static constexpr int kRests = 16;
   std::array<double, kRests> rests_{};  ///< in order; on the time of the cells [s]
   int rest_count_ = 0;
