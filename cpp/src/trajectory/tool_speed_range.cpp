@@ -103,7 +103,7 @@ SpeedRange tool_speed_range(const std::array<double, 6>& timing, double duration
   };
   const double error = rate.error * slope;
   const double known = std::max(0.0, asked * duration - error);
-  const Search search{value_at, second, known * known};
+  const Search<decltype(value_at)> search{value_at, second, known * known};
   double least = std::numeric_limits<double>::infinity(), most = 0.0, before = 0.0;
   for (int k = 0; k <= kParts; ++k) {
     const double x = static_cast<double>(k) / kParts;
